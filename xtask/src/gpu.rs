@@ -1,6 +1,8 @@
 //! The GPU kernels: counted in their code (`gpu-report`), and measured on a GPU (`gpu-bench`). NVIDIA's compiler and
 //! disassembler come from PyPI, into an environment of their own.
 
+mod shares;
+
 use crate::command;
 use crate::oracles;
 use crate::report::Outcome;
@@ -14,12 +16,22 @@ const REQUIREMENTS: &str = "benches/requirements-gpu.txt";
 /// The environment, whose NVRTC the tests of mozzi-gpu use, too.
 const FOLDER: &str = "target/nvidia";
 
+const COUNTED: &str = "docs/gpu.md";
+const MEASURED: &str = "benches/GPU.md";
+
 pub fn report(workspace: &Workspace, options: &[&str]) -> Outcome {
-    run(workspace, "report", "docs/gpu.md", options)
+    run(workspace, "report", COUNTED, options)
 }
 
 pub fn bench(workspace: &Workspace, options: &[&str]) -> Outcome {
-    run(workspace, "bench", "benches/GPU.md", options)
+    run(workspace, "bench", MEASURED, options)
+}
+
+/// Writes the share of the counted bounds into the measured page.
+fn compare(workspace: &Workspace) -> Result<(), String> {
+    let read = |name: &str| std::fs::read_to_string(workspace.path(name)).map_err(|error| format!("{name}: {error}"));
+    let page = shares::add(&read(MEASURED)?, &read(COUNTED)?);
+    std::fs::write(workspace.path(MEASURED), page).map_err(|error| format!("{MEASURED}: {error}"))
 }
 
 fn run(workspace: &Workspace, example: &str, page: &str, options: &[&str]) -> Outcome {
@@ -44,7 +56,10 @@ fn run(workspace: &Workspace, example: &str, page: &str, options: &[&str]) -> Ou
     if !options.iter().any(|option| ["--only", "--quantity", "--states", "--page"].contains(option)) {
         cargo.arg("--page").arg(workspace.path(page));
     }
-    command::outcome(&mut cargo)
+    match command::run(cargo).and_then(|()| compare(workspace)) {
+        Ok(()) => Outcome::Passed(String::new()),
+        Err(why) => Outcome::Failed(why),
+    }
 }
 
 /// Installs the packages; returns their folder.

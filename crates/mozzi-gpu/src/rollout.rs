@@ -45,7 +45,7 @@ impl Source {
             inputs: vec![state("theta"), state("dtheta")],
             outputs: vec![state("theta_table"), state("dtheta_table")],
             form: Form { precision, layout, is_packed: false },
-            block: Block { threads: THREADS, is_staged: vec![false; 4], shared_bytes: 0 },
+            block: Block { threads: THREADS, shared_bytes: 0 },
             kernels: "-DMOZZI_ONLY_ROWS -DMOZZI_ONLY_COLUMNS", // the function of one state alone
         })
     }

@@ -5,7 +5,9 @@ mod common;
 
 use common::host::{Call, exists, run};
 use common::{LAYOUTS, PRECISIONS, embedded, error, form, inputs, quantities, robots, transposed};
-use mozzi::quantities::{ForwardDynamics, InverseDynamics, MassMatrix, Query, TaskSpaceDynamics};
+use mozzi::quantities::{
+    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Query, TaskSpaceDynamics,
+};
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia, Sym3, Vec3};
 use mozzi_codegen::{CudaLayout, Precision};
 use mozzi_gpu::{Error, Form, Source};
@@ -81,6 +83,20 @@ fn every_robot_quantity_precision_and_layout() {
             }
         }
     }
+}
+
+/// Results that do not fit into shared memory as they lie; every robot's numbers are compared above.
+#[test]
+fn long_rows_of_sparse_results_pass_through_slots() {
+    let model = robots().pop().expect("the floating quadruped");
+    let text = |precision, layout| {
+        let source = Source::new(&model, InverseDynamicsDerivatives, form(precision, layout)).expect("a source");
+        source.text().to_string()
+    };
+    let rows = text(Precision::F32, CudaLayout::Rows);
+    assert!(rows.contains("_spread<324, ") && rows.contains("_slots[324] = {"), "{rows}");
+    let arm = Source::new(&embedded("panda"), InverseDynamicsDerivatives, Form::default()).expect("a source");
+    assert!(!arm.text().contains("_slots"));
 }
 
 #[test]

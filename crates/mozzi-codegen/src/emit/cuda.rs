@@ -4,14 +4,18 @@
 //! program is emitted only once.
 
 mod kernels;
+mod staging;
 
-pub use kernels::{Block, CudaLayout};
+pub use kernels::CudaLayout;
+pub use staging::Block;
 
 use super::c::C;
 use super::dialect::{Dialect, Sines, Source};
 use super::{SourceFile, sin_cos};
 use crate::function::Function;
+use staging::Slots;
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 struct Cuda<'s> {
     c: C,
@@ -19,7 +23,12 @@ struct Cuda<'s> {
     prefix: &'s str,
     /// The file's constants, keyed by their bits.
     constants: RefCell<Vec<f64>>,
+    /// The results of the present function whose rows are in slots.
+    slots: RefCell<BTreeMap<String, Slots>>,
 }
+
+/// No slot.
+const NONE: usize = 65535;
 
 impl Cuda<'_> {
     fn is_f64(&self) -> bool {
@@ -40,7 +49,10 @@ impl Dialect for Cuda<'_> {
         format!("{array}[{index} * stride]")
     }
     fn store(&self, array: &str, index: usize, value: &str) -> String {
-        format!("{}_put<columns, {index}>({array}, stride, {value});", self.prefix)
+        let slots = self.slots.borrow();
+        let slot = slots.get(array).map(|slots| slots.of[index].filter(|_| slots.is_first(index)).unwrap_or(NONE));
+        let slot = slot.map_or(String::new(), |slot| format!(", {slot}"));
+        format!("{}_put<columns, {index}{slot}>({array}, stride, {value});", self.prefix)
     }
     fn helper(&self, name: &str) -> String {
         match name {
@@ -90,7 +102,7 @@ impl Dialect for Cuda<'_> {
 /// One file.
 pub(super) fn files(source: &Source) -> Vec<SourceFile> {
     let name = &source.name;
-    let cuda = Cuda { c: C(source.precision), prefix: name, constants: RefCell::default() };
+    let cuda = Cuda { c: C(source.precision), prefix: name, constants: RefCell::default(), slots: RefCell::default() };
     // the constants are known once the code that uses them is written, and are emitted before it
     let helpers = helpers(source, &cuda);
     let mut functions = kernels::put(&cuda);

@@ -20,7 +20,7 @@ pub fn text(
          on arrays of the device, in brackets the slowest; then once from arrays of the host and back, copies and \
          allocation included. *memory* is the share of the {:.2} TB/s that a kernel reaches which only copies. Errors are \
          the largest of 500 states against the CPU in f64 at the same numbers, relative to the state's largest entry, in \
-         ε. Bounds counted in the code: docs/gpu.md.\n",
+         ε. *of the bound*: the share of the bound that docs/gpu.md counts in the code for an H200.\n",
         device.name(),
         device.arch(),
         device.multiprocessors()?,

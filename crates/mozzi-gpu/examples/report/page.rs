@@ -16,7 +16,7 @@ are lower. `cargo xtask gpu-bench` measures on a machine with a GPU. How to use 
   allow 256.
 - **instructions** of one state: fused multiply-adds, other sums and products, the special unit (reciprocals, square
   roots), global, shared and local memory, all others. Rare paths, such as those of divisions by tiny numbers, are
-  included.
+  included. The loop that spreads a long, sparse result from shared memory is counted once.
 - **bytes**: what a state reads and writes in device memory.
 - **bounds**, 10⁹ states a second: *memory* is the bandwidth over the bytes; *arithmetic* the card's multiply-adds a
   second over the instructions of its arithmetic units; *issue* one instruction of a warp in each cycle of each

@@ -2,13 +2,13 @@
 //!
 //! Neighbouring threads should read neighbouring numbers. By columns they do. By rows, each warp copies the rows of its
 //! 32 states to shared memory as they lie, and its threads read their own row there: rows of an even length get a
-//! number of padding, so that the threads' rows begin in different banks. Outputs return the same way.
+//! number of padding, so that the threads' rows begin in different banks. Outputs return the same way; of those that
+//! do not fit, only different entries are there, and the copy spreads them.
 
-use super::super::Precision;
 use super::super::body;
 use super::super::dialect::{Argument, Emitted, Source};
-use super::Cuda;
-use crate::program::{Program, Step};
+use super::staging::{Block, Staging, plan};
+use super::{Cuda, NONE};
 
 /// Order of the numbers of many states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -29,48 +29,8 @@ impl CudaLayout {
     }
 }
 
-/// The block of a kernel: how many threads it may have, and which arrays pass through shared memory.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Block {
-    /// The largest number of threads, a multiple of 32; smaller multiples of 32 are allowed.
-    pub threads: usize,
-    /// For each input, then each output: whether its rows pass through shared memory.
-    pub is_staged: Vec<bool>,
-    /// Bytes of shared memory.
-    pub shared_bytes: usize,
-}
-
-/// Shared memory that a kernel may have without asking the driver for more.
-const SHARED_BYTES: usize = 48 * 1024;
-
 /// A thread's state.
 const STATE: &str = "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;";
-
-impl Block {
-    /// The block of a program's kernel. Rows that do not fit into shared memory with 32 threads, the longest first, are
-    /// read and written in place.
-    pub fn of(program: &Program, layout: CudaLayout, precision: Precision) -> Block {
-        let is_read = |k: usize| program.steps.iter().any(|step| matches!(step, Step::Input(a, _) if *a as usize == k));
-        let inputs = program.inputs.iter().enumerate().map(|(k, x)| if is_read(k) { x.length } else { 0 });
-        let lengths: Vec<usize> = inputs.chain(program.outputs.iter().map(|output| output.values.len())).collect();
-        let mut is_staged: Vec<bool> = lengths.iter().map(|&n| layout == CudaLayout::Rows && n > 1).collect();
-        loop {
-            let staged = || lengths.iter().zip(&is_staged).filter(|(_, is_staged)| **is_staged).map(|(n, _)| *n);
-            let of_thread = staged().map(padded).sum::<usize>() * if precision.is_f64() { 8 } else { 4 };
-            if let Some(threads) = [128, 64, 32].into_iter().find(|threads| threads * of_thread <= SHARED_BYTES) {
-                return Block { threads, is_staged, shared_bytes: threads * of_thread };
-            }
-            let longest = staged().max();
-            let at = (0..lengths.len()).find(|&k| is_staged[k] && Some(lengths[k]) == longest);
-            at.into_iter().for_each(|k| is_staged[k] = false);
-        }
-    }
-}
-
-/// An odd number of entries: 32 rows then begin in 32 banks.
-fn padded(length: usize) -> usize {
-    length | 1
-}
 
 /// How results are stored. By columns the address is computed for this one store: compilers would otherwise share
 /// offsets between arrays and keep hundreds of them in registers.
@@ -78,21 +38,21 @@ pub(super) fn put(cuda: &Cuda) -> Vec<String> {
     let (number, prefix) = (cuda.c.number(), cuda.prefix);
     let (bits, constraint) = if cuda.is_f64() { (64, 'd') } else { (32, 'f') };
     vec![format!(
-        "\n// Entry k of a result; columns are in global memory.\ntemplate <bool columns, unsigned k>\nstatic __device__ \
+        "\n// Entry k of a result; columns are in global memory, rows may have other places, or none, for equal \
+         entries.\ntemplate <bool columns, unsigned k, unsigned slot = k>\nstatic __device__ \
          __forceinline__ void {prefix}_put({number} *__restrict__ to, const unsigned long long stride, const {number} \
          x)\n{{\n#ifdef __CUDA_ARCH__\n    if (columns) {{\n        asm volatile(\"{{ .reg .u64 a; mad.wide.u32 a, %1, %2, %0; \
          st.global.f{bits} [a], %3; }}\"\n            :: \"l\"(__cvta_generic_to_global(to)), \"r\"((unsigned) stride), \
-         \"n\"(k * (unsigned) sizeof x), \"{constraint}\"(x));\n        return;\n    }}\n#endif\n    to[k * stride] = x;\n}}"
+         \"n\"(k * (unsigned) sizeof x), \"{constraint}\"(x));\n        return;\n    }}\n#endif\n#ifndef MOZZI_ONLY_COLUMNS\n    if (!columns && slot != k) {{\n        if (slot != \
+         {NONE}u) to[slot * stride] = x;\n        return;\n    }}\n#endif\n    to[k * stride] = x;\n}}"
     )]
 }
 
 /// The copies of rows to and from shared memory that the kernels call.
 pub(super) fn copies(source: &Source, cuda: &Cuda) -> Vec<String> {
-    let is_staged = |function: &Emitted| {
-        let block = Block::of(function.program, CudaLayout::Rows, source.precision);
-        block.is_staged.contains(&true)
-    };
-    if !source.functions.iter().any(is_staged) {
+    let plans = source.functions.iter().map(|function| plan(function.program, CudaLayout::Rows, source.precision).1);
+    let all: Vec<Staging> = plans.flatten().collect();
+    if all.iter().all(|staging| *staging == Staging::InPlace) {
         return Vec::new();
     }
     let (number, prefix) = (cuda.c.number(), cuda.prefix);
@@ -105,12 +65,23 @@ pub(super) fn copies(source: &Source, cuda: &Cuda) -> Vec<String> {
              if (j < states * length) {assignment};\n    }}\n}}"
         )
     };
-    vec![
+    let mut lines = vec![
         "\n#ifndef MOZZI_ONLY_COLUMNS".to_string(),
         copy("fetch", "Rows of a warp's states, to shared memory.", "to[at] = from[j]"),
         copy("store", "Rows of a warp's states, from shared memory.", "to[j] = from[at]"),
-        "#endif".to_string(),
-    ]
+    ];
+    if all.iter().any(|staging| matches!(staging, Staging::Slots(_))) {
+        lines.push(format!(
+            "\n// Rows of a warp's states, from slots in shared memory; entries without one are 0.\ntemplate <unsigned \
+             length, unsigned width>\nstatic __device__ __forceinline__ void {prefix}_spread(\n    const {number} \
+             *__restrict__ from, {number} *__restrict__ to, const unsigned short *__restrict__ slots,\n    const unsigned \
+             states, const unsigned lane)\n{{\n#pragma unroll 4\n    for (unsigned j = lane; j < states * length; j += 32u) \
+             {{\n        const unsigned slot = slots[j % length];\n        to[j] = slot == {NONE}u ? ({number}) 0 : \
+             from[j / length * width + slot];\n    }}\n}}"
+        ));
+    }
+    lines.push("#endif".to_string());
+    lines
 }
 
 /// The function of one state, and its kernels.
@@ -120,9 +91,26 @@ pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     let inputs = function.inputs.iter().map(|input| pointer("const ", input));
     let arguments: Vec<String> = inputs.chain(function.outputs.iter().map(|output| pointer("", output))).collect();
     let arguments = arguments.join(", ");
+    let staging = plan(function.program, CudaLayout::Rows, cuda.c.0).1;
+    let outputs = function.outputs.iter().zip(&staging[function.inputs.len()..]);
+    let slots = outputs.filter_map(|(output, staging)| match staging {
+        Staging::Slots(slots) => Some((output.name.clone(), slots.clone())),
+        _ => None,
+    });
+    *cuda.slots.borrow_mut() = slots.collect();
     let mut lines = vec![String::new()];
+    for (output, slots) in cuda.slots.borrow().iter() {
+        lines.push(format!("// Where the rows of {output} have each entry; {NONE}: it is 0."));
+        lines.push(format!("static __device__ const unsigned short {name}_{output}_slots[{}] = {{", slots.of.len()));
+        lines.extend(slots.of.chunks(16).map(|row| {
+            let row: Vec<String> = row.iter().map(|slot| format!("{},", slot.unwrap_or(NONE))).collect();
+            format!("    {}", row.join(" "))
+        }));
+        lines.push("};".to_string());
+    }
     lines.extend(function.lines().iter().map(|line| format!("// {line}")));
     lines.push("// Of one state: entry k of an array is at k * stride; columns have a stride below 2^32.".to_string());
+    lines.extend(cuda.slots.borrow().keys().map(|output| format!("// Rows of {output} are in slots.")));
     lines.push(format!(
         "template <bool columns>\nstatic __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
     ));
@@ -148,7 +136,7 @@ fn columns(
     head: impl Fn(CudaLayout, usize) -> String,
     lines: &mut Vec<String>,
 ) {
-    let Block { threads, .. } = Block::of(function.program, CudaLayout::Columns, cuda.c.0);
+    let (Block { threads, .. }, _) = plan(function.program, CudaLayout::Columns, cuda.c.0);
     let arrays: String = arrays(function).map(|argument| format!("{} + i, ", argument.name)).collect();
     lines.push("\n#ifndef MOZZI_ONLY_ROWS".to_string());
     lines.push(format!(
@@ -166,11 +154,11 @@ fn rows(
     head: impl Fn(CudaLayout, usize) -> String,
     lines: &mut Vec<String>,
 ) {
-    let Block { threads, is_staged, .. } = Block::of(function.program, CudaLayout::Rows, cuda.c.0);
+    let (Block { threads, .. }, staging) = plan(function.program, CudaLayout::Rows, cuda.c.0);
     let (number, prefix) = (cuda.c.number(), cuda.prefix);
-    let staged: Vec<(&Argument, bool)> = arrays(function).zip(is_staged).collect();
+    let staged: Vec<(&Argument, Staging)> = arrays(function).zip(staging).collect();
     let is_input = |k: usize| k < function.inputs.len();
-    let of_thread: usize = staged.iter().filter(|(_, is_staged)| *is_staged).map(|(x, _)| padded(x.length)).sum();
+    let of_thread: usize = staged.iter().map(|(x, staging)| staging.width(x.length)).sum();
     lines.push("\n#ifndef MOZZI_ONLY_COLUMNS".to_string());
     lines.push(
         "// Of `count` states, a thread each: entry k of state i at i * length + k; blocks of a multiple of".into(),
@@ -197,23 +185,32 @@ fn rows(
     );
     lines.push(format!("    {number} *const warp_ = shared_ + (threadIdx.x - lane_) * {of_thread};"));
     let mut place = 0;
-    for (x, _) in staged.iter().filter(|(_, is_staged)| *is_staged) {
+    for (x, staging) in staged.iter().filter(|(_, staging)| *staging != Staging::InPlace) {
         lines.push(format!("    {number} *const {}_ = warp_ + 32 * {place};", x.name));
-        place += padded(x.length);
+        place += staging.width(x.length);
     }
     let copies = |of_inputs: bool| {
-        let those =
-            staged.iter().enumerate().filter(move |(k, (_, is_staged))| *is_staged && is_input(*k) == of_inputs);
-        those.map(move |(_, (x, _))| match of_inputs {
-            true => format!("    {prefix}_fetch<{1}>({0} + first_ * {1}, {0}_, states_, lane_);", x.name, x.length),
-            false => format!("    {prefix}_store<{1}>({0}_, {0} + first_ * {1}, states_, lane_);", x.name, x.length),
+        let those = staged.iter().enumerate().filter(move |(k, _)| is_input(*k) == of_inputs);
+        those.filter_map(move |(_, (x, staging))| {
+            let Argument { name: x, length, .. } = x;
+            let width = staging.width(*length);
+            Some(match (staging, of_inputs) {
+                (Staging::InPlace, _) => return None,
+                (_, true) => format!("    {prefix}_fetch<{length}>({x} + first_ * {length}, {x}_, states_, lane_);"),
+                (Staging::Whole, _) => {
+                    format!("    {prefix}_store<{length}>({x}_, {x} + first_ * {length}, states_, lane_);")
+                }
+                (Staging::Slots(_), _) => format!(
+                    "    {prefix}_spread<{length}, {width}>({x}_, {x} + first_ * {length}, {name}_{x}_slots, states_, lane_);"
+                ),
+            })
         })
     };
     lines.extend(copies(true));
     lines.push("    __syncwarp();".to_string());
-    let row = |(x, is_staged): &(&Argument, bool)| match is_staged {
-        true => format!("{}_ + lane_ * {}, ", x.name, padded(x.length)),
-        false => format!("{} + (first_ + lane_) * {}, ", x.name, x.length),
+    let row = |(x, staging): &(&Argument, Staging)| match staging {
+        Staging::InPlace => format!("{} + (first_ + lane_) * {}, ", x.name, x.length),
+        _ => format!("{}_ + lane_ * {}, ", x.name, staging.width(x.length)),
     };
     lines.push(format!("    if (lane_ < states_) {name}<false>({}1);", staged.iter().map(row).collect::<String>()));
     lines.push("    __syncwarp();".to_string());
