@@ -1,4 +1,5 @@
-//! The last column of `benches/GPU.md`: what share of the bound that `docs/gpu.md` counts for the same kernel was reached.
+//! The last column of `benches/GPU.md`: what share was reached of the bound that `docs/gpu.md` counts for the same
+//! kernel.
 
 use std::collections::BTreeMap;
 
