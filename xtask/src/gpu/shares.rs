@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 type Key = (String, String, String);
 /// The column's heading, and the card of the bounds.
 const HEADING: &str = "of the bound";
-const CARD: &str = "H200";
+const CARD: &str = "NVIDIA H200";
 /// Columns before it.
 const WIDTH: usize = 7;
 
@@ -71,7 +71,7 @@ mod tests {
 
     const COUNTED: &str = "# GPU kernels, counted\n\n## Panda, n = 7\n\n| quantity | | bytes | bound on an H200 |\n\
         |---|---|---|---|\n| mass matrix | f32 SoA | 112 | 21.4 memory |\n";
-    const MEASURED: &str = "# GPU kernels, measured\n\nWritten by `cargo xtask gpu-bench`. NVIDIA H200.\n\n## Panda\n\n\
+    const MEASURED: &str = "# GPU kernels, measured\n\nWritten by `cargo xtask gpu-bench`. NVIDIA H200. Bounds are for an H200.\n\n## Panda\n\n\
         | quantity | | registers | on the device | from the host | memory | error, ε |\n|---|---|---|---|---|---|---|\n\
         | mass matrix | f32 SoA | 40 | 14.728 (14.719) | 0.0074 | 81 % | 3.6 |\n\
         | mass matrix | f64 SoA | 72 | 8.4 (8.3) | 0.0034 | 92 % | 6.1 |\n\n## Rollouts\n\n| robot | robots |\n|---|---|\n\
