@@ -1,6 +1,8 @@
 //! Kernels on a GPU for `mozzi._gpu`, which gives the addresses of arrays.
 
 use crate::model::PyModel;
+use mozzi::Model;
+use mozzi::quantities::Query;
 use mozzi_codegen::{CudaLayout, Precision};
 use mozzi_gpu::{Binary, Device, Error, Form, Kernel, Nvrtc, Rollout, RolloutArrays, Source, Steps, Stream};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -37,8 +39,20 @@ fn layout(layout: &str) -> PyResult<CudaLayout> {
     choice("layout", layout, [("rows", CudaLayout::Rows), ("columns", CudaLayout::Columns)])
 }
 
+/// A quantity's kernel on a device, by NVRTC as of [`compiled`].
+pub fn loaded(
+    robot: &Model,
+    query: Query<'_>,
+    form: Form,
+    device: &Device,
+    packages: &[PathBuf],
+) -> Result<Kernel, Error> {
+    let source = Source::new(robot, query, form)?;
+    device.load(&source, &*compiled(&source, device, packages)?)
+}
+
 /// By NVRTC of `MOZZI_NVRTC`, else of Python's packages, else of the system.
-pub fn compiled(source: &Source, device: &Device, packages: &[PathBuf]) -> Result<Arc<Binary>, Error> {
+fn compiled(source: &Source, device: &Device, packages: &[PathBuf]) -> Result<Arc<Binary>, Error> {
     let from_variable = std::env::var_os("MOZZI_NVRTC").is_some();
     let of_packages = if from_variable { None } else { Nvrtc::in_packages(packages).ok() };
     source.compile(&of_packages.map_or_else(Nvrtc::find, Ok)?, device.arch())
@@ -63,10 +77,8 @@ impl GpuKernel {
         let query = model.query(quantity, frame)?;
         let form = Form { precision: precision(dtype)?, layout: self::layout(layout)?, is_packed: packed };
         let (device, robot) = (Device::open(device).map_err(failure)?, &model.robot().model);
-        let source = Source::new(robot, query, form).map_err(failure)?;
-        let binary = compiled(&source, &device, &packages).map_err(failure)?;
-        let kernel = device.load(&source, &binary).map_err(failure)?;
-        let shapes = query.declaration().outputs.iter().zip(query.shapes(robot)).zip(source.outputs());
+        let kernel = loaded(robot, query, form, &device, &packages).map_err(failure)?;
+        let shapes = query.declaration().outputs.iter().zip(query.shapes(robot)).zip(kernel.source().outputs());
         // a packed matrix has no shape but its length
         let shape =
             |shape: Vec<usize>, length| if shape.iter().product::<usize>() == length { shape } else { vec![length] };

@@ -40,7 +40,7 @@ impl Arguments {
         robots(self.option("--robots").map(Path::new))
     }
 
-    /// The kernels that are asked for.
+    /// Each robot, quantity and form that the arguments choose.
     pub fn kernels<'r>(&self, robots: &'r [Robot]) -> Vec<(&'r Robot, Query<'static>, Form)> {
         let (only, quantity) = (self.option("--only"), self.option("--quantity"));
         let asked = robots.iter().filter(|robot| only.is_none_or(|name| name == robot.name));

@@ -64,17 +64,9 @@ class Gpu:
         for x, (name, length) in zip(views, names):
             self._check(x, name, self._shape(leading, (length,)), dtype)
         shapes = [self._shape(leading, tuple(shape)) for _, shape in kernel.outputs]
-        if out is None:
-            results = tuple(empty(inputs[0], shape, dtype) for shape in shapes)
-        else:
-            results = tuple(out) if isinstance(out, (tuple, list)) else (out,)
-            if len(results) != len(shapes):
-                raise TypeError(f"out has {len(results)} arrays, expected {len(shapes)}")
-        places = [view(x, "out") for x in results]
-        for x, (name, _), shape in zip(places, kernel.outputs, shapes):
-            self._check(x, f"out ({name})", shape, dtype)
+        results, places = self._results(inputs[0], out, [name for name, _ in kernel.outputs], shapes, dtype)
         chosen = stream_of(inputs[0], views) if stream is None else stream
-        kernel.launch([x.address for x in views], [x.address for x in places], math.prod(leading), chosen)
+        kernel.launch([x.address for x in views], places, math.prod(leading), chosen)
         return results[0] if len(results) == 1 else results
 
     def rollout(
@@ -142,12 +134,7 @@ class Gpu:
         if steps < 1 or every < 1 or steps % every:
             raise ValueError(f"every is {every}, expected a divisor of the number of steps, {steps}")
         shape = self._shape(leading, (steps // every, n))
-        results = tuple(empty(theta, shape, dtype) for _ in range(2)) if out is None else tuple(out)
-        if len(results) != 2:
-            raise TypeError(f"out has {len(results)} arrays, expected 2")
-        tables = [view(x, "out") for x in results]
-        for x, name in zip(tables, ("theta", "dtheta")):
-            self._check(x, f"out ({name})", shape, dtype)
+        results, tables = self._results(theta, out, ["theta", "dtheta"], [shape, shape], dtype)
         if ("rollout", dtype) not in self._kernels:
             made = _mozzi.GpuRollout(self.model, dtype, self.layout, self.device, packages())
             self._kernels["rollout", dtype] = made
@@ -155,7 +142,7 @@ class Gpu:
             [x.address for x in views],
             None if torques is None else torques.address,
             feedback,
-            [x.address for x in tables],
+            tables,
             step,
             steps,
             every,
@@ -163,6 +150,21 @@ class Gpu:
             stream_of(theta, views) if stream is None else stream,
         )
         return results[0], results[1]
+
+    def _results(
+        self, like: Any, out: Any, names: list[str], shapes: list[tuple[int, ...]], dtype: str
+    ) -> tuple[tuple[Any, ...], list[int]]:
+        """The arrays for the results, those of ``out`` or new ones, and their addresses."""
+        if out is None:
+            results = tuple(empty(like, shape, dtype) for shape in shapes)
+        else:
+            results = tuple(out) if isinstance(out, (tuple, list)) else (out,)
+            if len(results) != len(shapes):
+                raise TypeError(f"out has {len(results)} arrays, expected {len(shapes)}")
+        places = [view(x, "out") for x in results]
+        for x, name, shape in zip(places, names, shapes):
+            self._check(x, f"out ({name})", shape, dtype)
+        return results, [x.address for x in places]
 
     def _torques(
         self, tau: Any, steps: int | None, leading: tuple[int, ...], dtype: str

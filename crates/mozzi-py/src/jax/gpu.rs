@@ -1,9 +1,9 @@
 //! A call of JAX on an NVIDIA GPU: a quantity's kernel, made at the first call, and checks of lengths.
 
 use super::{call, registry};
-use crate::gpu::compiled;
+use crate::gpu::loaded;
 use mozzi_codegen::{CudaLayout, Precision};
-use mozzi_gpu::{Argument, Device, Form, Kernel, Source};
+use mozzi_gpu::{Argument, Device, Form, Kernel};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -27,13 +27,10 @@ pub fn kernel(robot: i64, quantity: &str, frame: &str, precision: Precision) -> 
     }
     let entry = registry::find(robot)?;
     let query = call::query(&entry.model, quantity, frame)?;
-    let made = || {
-        let device = Device::open(0)?;
-        let source = Source::new(&entry.model, query, Form { precision, layout: CudaLayout::Rows, is_packed: false })?;
-        let binary = compiled(&source, &device, PACKAGES.get().map_or(&[], Vec::as_slice))?;
-        device.load(&source, &binary)
-    };
-    let kernel = made().map_err(|error: mozzi_gpu::Error| error.to_string())?;
+    let form = Form { precision, layout: CudaLayout::Rows, is_packed: false };
+    let packages = PACKAGES.get().map_or(&[][..], Vec::as_slice);
+    let made = Device::open(0).and_then(|device| loaded(&entry.model, query, form, &device, packages));
+    let kernel = made.map_err(|error| error.to_string())?;
     kernels.insert(key, kernel.clone());
     Ok(kernel)
 }

@@ -91,7 +91,7 @@ pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     let inputs = function.inputs.iter().map(|input| pointer("const ", input));
     let arguments: Vec<String> = inputs.chain(function.outputs.iter().map(|output| pointer("", output))).collect();
     let arguments = arguments.join(", ");
-    let staging = plan(function.program, CudaLayout::Rows, cuda.c.0).1;
+    let (block, staging) = plan(function.program, CudaLayout::Rows, cuda.c.0);
     let outputs = function.outputs.iter().zip(&staging[function.inputs.len()..]);
     let slots = outputs.filter_map(|(output, staging)| match staging {
         Staging::Slots(slots) => Some((output.name.clone(), slots.clone())),
@@ -124,7 +124,7 @@ pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
             layout.name()
         )
     };
-    rows(function, cuda, &name, head, &mut lines);
+    rows(function, cuda, &name, (block, staging), head, &mut lines);
     columns(function, cuda, &name, head, &mut lines);
     lines
 }
@@ -136,7 +136,7 @@ fn columns(
     head: impl Fn(CudaLayout, usize) -> String,
     lines: &mut Vec<String>,
 ) {
-    let (Block { threads, .. }, _) = plan(function.program, CudaLayout::Columns, cuda.c.0);
+    let Block { threads, .. } = Block::of(function.program, CudaLayout::Columns, cuda.c.0);
     let arrays: String = arrays(function).map(|argument| format!("{} + i, ", argument.name)).collect();
     lines.push("\n#ifndef MOZZI_ONLY_ROWS".to_string());
     lines.push(format!(
@@ -151,10 +151,10 @@ fn rows(
     function: &Emitted,
     cuda: &Cuda,
     name: &str,
+    (Block { threads, .. }, staging): (Block, Vec<Staging>),
     head: impl Fn(CudaLayout, usize) -> String,
     lines: &mut Vec<String>,
 ) {
-    let (Block { threads, .. }, staging) = plan(function.program, CudaLayout::Rows, cuda.c.0);
     let (number, prefix) = (cuda.c.number(), cuda.prefix);
     let staged: Vec<(&Argument, Staging)> = arrays(function).zip(staging).collect();
     let is_input = |k: usize| k < function.inputs.len();
