@@ -54,6 +54,7 @@ usage: cargo xtask COMMAND
           the release build's operations on registers (none may be a call)
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
   check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
+          --quick                                     only what compiles nothing, in seconds: before each commit
   docs    rewrite the generated pages of docs/; `test` checks that they are current
   book    build the documentation book from book/, docs/ and the sources, with rustdoc, into target/book/html
           --code                                      run its code blocks instead; `test` does that and builds the book
@@ -105,7 +106,8 @@ fn main() -> ExitCode {
         ["test", ref options @ ..] if options.iter().all(|option| EXTRAS.iter().any(|(name, _)| name == option)) => {
             test(&workspace, options)
         }
-        ["check"] => check(&workspace),
+        ["check"] => check(&workspace, Check::Everything),
+        ["check", "--quick"] => check(&workspace, Check::WithoutBuilds),
         ["docs"] => docs(&workspace),
         ["book"] => book(&workspace),
         ["book", "--code"] => one("code of the book", || book::code(&workspace)),
@@ -200,12 +202,33 @@ fn book(workspace: &Workspace) -> ExitCode {
     report.finish()
 }
 
-fn check(workspace: &Workspace) -> ExitCode {
+/// Which steps `check` takes.
+#[derive(PartialEq)]
+enum Check {
+    Everything,
+    /// Those that compile nothing of the workspace.
+    WithoutBuilds,
+}
+
+fn check(workspace: &Workspace, which: Check) -> ExitCode {
     let mut report = Report::default();
     report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
     report.step("formatting of the book's builder", || {
         command::outcome(workspace.cargo(&["fmt", "--check", "--manifest-path", "xtask/book/Cargo.toml"]))
     });
+    report.step("licences", || licences::check(workspace));
+    report.step("licence texts", || third_party::check(workspace));
+    report.step("advisories", || advisories::check(workspace));
+    report.step("house rules", || house_rules::check(workspace));
+    report.step("lengths of documents", || documents::check(workspace));
+    if which == Check::Everything {
+        builds(workspace, &mut report);
+    }
+    report.finish()
+}
+
+/// The steps of `check` that compile the workspace.
+fn builds(workspace: &Workspace, report: &mut Report) {
     report.step("clippy", || {
         let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
         command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
@@ -217,12 +240,6 @@ fn check(workspace: &Workspace) -> ExitCode {
         command::outcome(doc.env("RUSTDOCFLAGS", "-Dwarnings"))
     });
     report.step("public items", || release::api::check(workspace));
-    report.step("licences", || licences::check(workspace));
-    report.step("licence texts", || third_party::check(workspace));
-    report.step("advisories", || advisories::check(workspace));
-    report.step("house rules", || house_rules::check(workspace));
-    report.step("lengths of documents", || documents::check(workspace));
-    report.finish()
 }
 
 /// A command that adds its steps itself.

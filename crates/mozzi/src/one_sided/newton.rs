@@ -156,8 +156,8 @@ fn is_at_bound(law: Law, x: f64) -> bool {
     }
 }
 
-/// The x of Ax = b by LU, if A is square and not close to singular. Its rows and columns are scaled first, to a diagonal
-/// of ±1: the inertia at one joint may be many powers of ten that at another.
+/// The x of Ax = b by LU, if A is square and not close to singular. Its rows and columns are scaled first, to a
+/// diagonal of ±1: the inertia at one joint may be many powers of ten that at another.
 fn regular(A: &DMatrix<f64>, b: &DVector<f64>) -> Option<DVector<f64>> {
     if !A.is_square() || A.diagonal().iter().any(|x| *x == 0.0) {
         return None;
