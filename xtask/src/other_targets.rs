@@ -6,18 +6,22 @@ use crate::report::Outcome;
 use crate::workspace::Workspace;
 use std::process::Command;
 
-/// cargo's own variable: the program that runs what was built for AArch64.
+/// cargo's own variables: the program that runs what was built for AArch64, and the compiler of C that links it.
 const RUNNER: &str = "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER";
+const LINKER: &str = "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER";
 
 /// Tests of the libraries whose arithmetic depends on the processor. Times under an emulator say nothing.
 pub fn aarch64(workspace: &Workspace) -> Outcome {
     if std::env::var_os(RUNNER).is_none() {
         return Outcome::Skipped(format!(
-            "set {RUNNER} to qemu-aarch64 (and _LINKER to a linker for it), with `rustup target add aarch64-unknown-linux-gnu`"
+            "set {RUNNER} to qemu-aarch64 and {LINKER} to a C compiler for it, with `rustup target add aarch64-unknown-linux-gnu`"
         ));
     }
     let mut cargo = workspace.cargo(&["test", "--target", "aarch64-unknown-linux-gnu", "--tests", "--target-dir"]);
     cargo.arg(workspace.path("target/aarch64")).env("RUST_MIN_STACK", "16777216");
+    if let Some(compiler) = std::env::var_os(LINKER) {
+        cargo.env("CC", compiler); // tests compile emitted C
+    }
     command::outcome(cargo.args(["-p", "mozzi", "-p", "mozzi-batch", "-p", "mozzi-urdf", "-p", "mozzi-motion"]))
 }
 

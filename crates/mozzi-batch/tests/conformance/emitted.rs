@@ -7,8 +7,10 @@ use std::process::Command;
 
 /// Compiles one file with every quantity, and compares each function with the model's result at the first state.
 pub fn every_quantity_as_c(case: &Case) {
-    if Command::new("gcc").arg("--version").output().is_err() {
-        eprintln!("emitted C is skipped: there is no gcc");
+    // another processor's tests need its compiler, which `CC` names
+    let compiler = std::env::var_os("CC").unwrap_or_else(|| "gcc".into());
+    if Command::new(&compiler).arg("--version").output().is_err() {
+        eprintln!("emitted C is skipped: there is no {}", compiler.display());
         return;
     }
     let all = (0..LIST.len()).map(|index| case.query(Query::at(index)));
@@ -19,9 +21,9 @@ pub fn every_quantity_as_c(case: &Case) {
     std::fs::create_dir_all(&folder).expect("a folder");
     emit_into(&folder, case.model, &queries, Arguments::default(), Language::C, Precision::F64).expect("text");
     let library = folder.join("robot.so");
-    let mut gcc = Command::new("gcc");
-    gcc.args(["-O0", "-std=c99", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-o"]).arg(&library);
-    let output = gcc.arg(folder.join("tree.c")).arg("-lm").output().expect("gcc");
+    let mut cc = Command::new(&compiler);
+    cc.args(["-O0", "-std=c99", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-o"]).arg(&library);
+    let output = cc.arg(folder.join("tree.c")).arg("-lm").output().expect("a C compiler");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     // SAFETY: the library was compiled above, and has no initialisers.
     let library = unsafe { libloading::Library::new(&library) }.expect("a library");
