@@ -1,9 +1,10 @@
-// Bundles a page into one HTML file: `node build.mjs report|play FILE`. The same sources give the same bytes.
+// Bundles a page into one HTML file, gzipped: `node build.mjs report|play FILE`. The same sources give the same text.
 
 import { createHash } from "node:crypto";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -54,5 +55,5 @@ ${text(page.wasm).trim()}
 -->`;
 const parts = { policy, style, script };
 const html = text(page.html).replace(/\{\{(policy|style|script)\}\}/g, (_, name) => parts[name]);
-writeFileSync(file, html.replace("<!doctype html>", () => `<!doctype html>\n${notice}`));
+writeFileSync(file, gzipSync(html.replace("<!doctype html>", () => `<!doctype html>\n${notice}`), { level: 9 }));
 console.log(`${file}: ${html.length} bytes, three.js ${version}`);

@@ -9,6 +9,7 @@ use crate::report::Outcome;
 use crate::stamp::Stamp;
 use crate::venv;
 use crate::workspace::Workspace;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -18,13 +19,42 @@ const FOLDER: &str = "target/nvidia";
 
 const COUNTED: &str = "docs/gpu.md";
 const MEASURED: &str = "benches/GPU.md";
+/// The script that measures other libraries beside mozzi, and the variable that names the Python for it.
+const PEERS: &str = "benches/gpu/peers.py";
+const PYTHON: &str = "MOZZI_GPU_PYTHON";
 
 pub fn report(workspace: &Workspace, options: &[&str]) -> Outcome {
     run(workspace, "report", COUNTED, options)
 }
 
 pub fn bench(workspace: &Workspace, options: &[&str]) -> Outcome {
-    run(workspace, "bench", MEASURED, options)
+    match run(workspace, "bench", MEASURED, options) {
+        Outcome::Passed(_) if is_whole(options) => add_peers(workspace),
+        outcome => outcome,
+    }
+}
+
+/// Whether the options leave the page whole.
+fn is_whole(options: &[&str]) -> bool {
+    !options.iter().any(|option| ["--only", "--quantity", "--states", "--page"].contains(option))
+}
+
+/// Other libraries' speeds, at the end of the measured page.
+fn add_peers(workspace: &Workspace) -> Outcome {
+    let Some(python) = std::env::var_os(PYTHON) else {
+        return Outcome::Passed(format!(
+            "without other libraries: {PYTHON} names no Python that has them, see {PEERS}"
+        ));
+    };
+    let added = command::output(Command::new(python).arg(workspace.path(PEERS))).and_then(|(succeeded, table)| {
+        if !succeeded {
+            return Err(format!("{PEERS} failed"));
+        }
+        let page = workspace.path(MEASURED);
+        let opened = std::fs::OpenOptions::new().append(true).open(page);
+        opened.and_then(|mut page| page.write_all(table.as_bytes())).map_err(|error| format!("{MEASURED}: {error}"))
+    });
+    added.map_or_else(Outcome::Failed, |()| Outcome::Passed(String::new()))
 }
 
 /// Writes the share of the counted bounds into the measured page.
@@ -53,7 +83,7 @@ fn run(workspace: &Workspace, example: &str, page: &str, options: &[&str]) -> Ou
         }
         None => println!("without Talos: MOZZI_ROBOTS does not name the folder of example-robot-data"),
     }
-    if !options.iter().any(|option| ["--only", "--quantity", "--states", "--page"].contains(option)) {
+    if is_whole(options) {
         cargo.arg("--page").arg(workspace.path(page));
     }
     match command::run(cargo).and_then(|()| compare(workspace)) {

@@ -78,7 +78,8 @@ usage: cargo xtask COMMAND
           installs NVRTC and nvdisasm from PyPI into target/nvidia; no GPU is needed
           --arch sm_90                                the architecture
           --only UR5, --quantity mass_matrix          only this robot or quantity, to standard output
-  gpu-bench  measure the GPU kernels on this machine's GPU, into benches/GPU.md
+  gpu-bench  measure the GPU kernels on this machine's GPU, into benches/GPU.md; beside frax and MuJoCo Warp if
+          MOZZI_GPU_PYTHON names a Python with them (benches/gpu/peers.py)
           --only UR5, --quantity mass_matrix          only this robot or quantity, to standard output
           --states 4194304                            at most this many states in an array, likewise
   nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly

@@ -18,7 +18,7 @@ pub fn aarch64(workspace: &Workspace) -> Outcome {
         ));
     }
     let mut cargo = workspace.cargo(&["test", "--target", "aarch64-unknown-linux-gnu", "--tests", "--target-dir"]);
-    cargo.arg(workspace.path("target/aarch64")).env("RUST_MIN_STACK", "16777216");
+    cargo.arg(workspace.path("target/aarch64"));
     if let Some(compiler) = std::env::var_os(LINKER) {
         cargo.env("CC", compiler); // tests compile emitted C
     }

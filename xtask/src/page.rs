@@ -6,12 +6,15 @@ use crate::report::Outcome;
 use crate::stamp::fnv;
 use crate::wasm;
 use crate::workspace::Workspace;
-use std::path::PathBuf;
+use flate2::read::GzDecoder;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The pages: the name of each, as `page/build.mjs` knows it, and its bundle.
 const PAGES: [(&str, &str); 2] =
-    [("report", "crates/mozzi-report/bundle/page.html"), ("play", "crates/mozzi-report/bundle/play.html")];
+    [("report", "crates/mozzi-report/bundle/page.html.gz"), ("play", "crates/mozzi-report/bundle/play.html.gz")];
 /// Sources of the pages next to the scripts, as seen from `page/`; the notes are those of the wasm.
 const SOURCES: [&str; 10] = [
     "../crates/mozzi-report/bundle/mozzi.wasm.txt",
@@ -56,13 +59,21 @@ pub fn compare(workspace: &Workspace) -> Outcome {
 }
 
 fn is_built(workspace: &Workspace, name: &str, bundle: &str) -> Result<(), String> {
-    let new = workspace.target().join(format!("{name}.html"));
-    let read = |path: &PathBuf| std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()));
+    let new = workspace.target().join(format!("{name}.html.gz"));
     build(workspace, name, &new)?;
-    match read(&new)? == read(&workspace.path(bundle))? {
+    // unpacked: another version of zlib packs to other bytes
+    match unpack(&new)? == unpack(&workspace.path(bundle))? {
         true => Ok(()),
         false => Err(format!("{bundle} is not what npm builds from page/: run cargo xtask page")),
     }
+}
+
+/// The text of a bundle.
+pub fn unpack(bundle: &Path) -> Result<String, String> {
+    let wrong = |error: std::io::Error| format!("{}: {error}", bundle.display());
+    let mut text = String::new();
+    GzDecoder::new(File::open(bundle).map_err(wrong)?).read_to_string(&mut text).map_err(wrong)?;
+    Ok(text)
 }
 
 fn install(workspace: &Workspace) -> Result<(), String> {
@@ -70,7 +81,7 @@ fn install(workspace: &Workspace) -> Result<(), String> {
     command::run(Command::new(NPM).current_dir(page).args(["ci", "--no-audit", "--no-fund", "--ignore-scripts"]))
 }
 
-fn build(workspace: &Workspace, name: &str, file: &std::path::Path) -> Result<(), String> {
+fn build(workspace: &Workspace, name: &str, file: &Path) -> Result<(), String> {
     command::run(Command::new("node").current_dir(workspace.path("page")).args(["build.mjs", name]).arg(file))
 }
 
@@ -81,12 +92,12 @@ pub fn is_current(workspace: &Workspace) -> Outcome {
         Err(why) => return Outcome::Failed(why),
     };
     for (_, bundle) in PAGES {
-        match std::fs::read_to_string(workspace.path(bundle)) {
+        match unpack(&workspace.path(bundle)) {
             Ok(text) if text.contains(&format!("stamp {stamp}.")) => {}
             Ok(_) => {
                 return Outcome::Failed(format!("{bundle} is older than page/: run cargo xtask page (needs npm)"));
             }
-            Err(error) => return Outcome::Failed(format!("{bundle}: {error}")),
+            Err(why) => return Outcome::Failed(why),
         }
     }
     Outcome::Passed(format!("stamp {stamp}"))

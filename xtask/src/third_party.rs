@@ -2,6 +2,7 @@
 //! of their licences, read from the sources that cargo fetched.
 
 use crate::command;
+use crate::page;
 use crate::report::Outcome;
 use crate::workspace::{FEATURES, Workspace};
 use serde_json::Value;
@@ -24,7 +25,7 @@ const MIT: &str = "LICENSE-MIT";
 const HOLDERS: &str = "Copyright (c) The mozzi contributors";
 
 /// The page of the reports, whose first comment has the licence of the JavaScript in it.
-const PAGE: &str = "crates/mozzi-report/bundle/page.html";
+const PAGE: &str = "crates/mozzi-report/bundle/page.html.gz";
 
 const HEAD: &str = "\
 Software of others in mozzi's binaries: the Python wheel, the C and C++ library, and the command line. Written by
@@ -68,7 +69,7 @@ fn text(workspace: &Workspace) -> Result<(String, usize), String> {
     };
     let metadata: Value = serde_json::from_str(&text).map_err(|error| format!("`cargo metadata`: {error}"))?;
     let read = |file: &str| std::fs::read_to_string(workspace.path(file)).map_err(|error| format!("{file}: {error}"));
-    let (apache, mit, page) = (read(APACHE)?, read(MIT)?, read(PAGE)?);
+    let (apache, mit, page) = (read(APACHE)?, read(MIT)?, page::unpack(&workspace.path(PAGE))?);
     let (mut lines, mut texts) = (Vec::new(), Texts::new());
 
     let (name, licence) = of_page(&page)?;

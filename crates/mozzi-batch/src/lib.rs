@@ -22,9 +22,6 @@
 //!
 //! Results agree with those at one state to rounding, on [`InstructionSet::Portable`] bit for bit; they do not depend
 //! on the number of threads. A NaN or an infinity in a state gives NaN in that state's results and in no other's.
-//!
-//! Without optimisation the kernels of derivatives take more stack than the 2 MB of a thread: `opt-level = 1` for this
-//! package in `[profile.dev.package]`, or the variable `RUST_MIN_STACK=16777216`.
 
 mod batch;
 mod chunk;

@@ -6,8 +6,8 @@ use mozzi::Model;
 use mozzi_urdf::{embedded, json};
 use serde_json::{Value, json};
 
-/// Made by `cargo xtask page` from `page/`.
-const PAGE: &str = include_str!("../bundle/play.html");
+/// HTML, gzipped, made by `cargo xtask page` from `page/`.
+const PAGE: &[u8] = include_bytes!("../bundle/play.html.gz");
 /// mozzi-web with files and simulation for WebAssembly, gzipped, made by `cargo xtask page`.
 const WASM: &[u8] = include_bytes!("../bundle/play.wasm.gz");
 
@@ -80,11 +80,13 @@ fn is_as_embedded(name: &str, model: &Model) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::page::unpacked;
 
     #[test]
     fn the_playground_asks_for_nothing_and_is_small() {
-        assert!(PAGE.contains("default-src 'none'") && PAGE.contains("connect-src 'none'"));
-        assert!(PAGE.contains("three.js") && PAGE.contains("The MIT License"), "the notice of three.js");
+        let page = unpacked(PAGE);
+        assert!(page.contains("default-src 'none'") && page.contains("connect-src 'none'"));
+        assert!(page.contains("three.js") && page.contains("The MIT License"), "the notice of three.js");
         let model = mozzi_urdf::open("ur5").expect("embedded").build().expect("sound");
         let drawing = Drawing::default();
         let page = play_html(&Played { name: "ur5", file: "ur5.urdf", text: "", model: &model, drawing: &drawing });

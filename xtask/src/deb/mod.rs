@@ -98,7 +98,8 @@ fn size(file: &Path) -> Result<u64, String> {
 
 /// Builds the program and copies it; its place among cargo's results.
 fn command_line(workspace: &Workspace, stage: &Path, package: &Package) -> Result<PathBuf, String> {
-    let mut cargo = workspace.cargo(&["zigbuild", "--release", "--locked", "--package", "mozzi-cli", "--target"]);
+    let mut cargo =
+        workspace.cargo(&["zigbuild", "--profile", "dist", "--locked", "--package", "mozzi-cli", "--target"]);
     cargo.arg(package.target()).arg("--target-dir").arg(workspace.path(dist::CARGO));
     zig::prepare(workspace, &mut cargo)?;
     let commit = std::env::var("MOZZI_COMMIT").ok();
@@ -106,7 +107,7 @@ fn command_line(workspace: &Workspace, stage: &Path, package: &Package) -> Resul
         cargo.env("MOZZI_COMMIT", commit);
     }
     command::run(cargo)?;
-    let built = workspace.path(dist::CARGO).join(package.triple()).join("release/mozzi");
+    let built = workspace.path(dist::CARGO).join(package.triple()).join("dist/mozzi");
     copy(&built, &stage.join("usr/bin/mozzi"))?;
     Ok(built)
 }

@@ -49,6 +49,7 @@ fn built(workspace: &Workspace, version: &str) -> Result<String, String> {
     else {
         return Err("the program failed".into());
     };
+    let seconds = start.elapsed().as_secs_f64();
     if output != OUTPUT {
         return Err(format!("the program printed {output:?}, expected {OUTPUT:?}"));
     }
@@ -62,7 +63,6 @@ fn built(workspace: &Workspace, version: &str) -> Result<String, String> {
     if mozzi > 20 || urdf > 30 {
         return Err(format!("mozzi pulls {mozzi} crates (at most 20), mozzi-urdf {urdf} (at most 30)"));
     }
-    let seconds = start.elapsed().as_secs_f64();
     Ok(format!("built and run in {seconds:.0} s; mozzi pulls {mozzi} crates, mozzi-urdf {urdf}"))
 }
 

@@ -158,7 +158,7 @@ fn add_rows<const R: usize, S: Scalar, C: Scalar>(model: &Model<C>, tie: &Tie<C>
 }
 
 /// The columns of the first list that may also be in the second; both lists are descending.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn shared<'s>(columns: &'s [usize], others: &[usize]) -> &'s [usize] {
     let (mut from, last) = (0, others.first().copied().unwrap_or_default());
     while from < columns.len() && columns[from] > last {

@@ -77,7 +77,7 @@ impl Quantity for ConstrainedForwardDynamics {
     .divides();
 }
 impl Kernel for ConstrainedForwardDynamics {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, tau, ..], [ddtheta, lambda, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, constraints, .. } = c.memory;

@@ -64,7 +64,7 @@ impl Quantity for ConstraintImpulse {
     .divides();
 }
 impl Kernel for ConstraintImpulse {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [after, impulse, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, constraints, .. } = c.memory;

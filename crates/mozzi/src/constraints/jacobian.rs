@@ -71,7 +71,7 @@ pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The row of θ_j − Σ c_k θ_iᵏ = 0.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn joint_row<S: Scalar + From<C>, C: Scalar>(
     theta: &[S],
     dtheta: &[S],
@@ -101,7 +101,7 @@ fn joint_row<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The rows between two anchors.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // a state, a constraint, and its rows
 fn frame_rows<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -161,7 +161,7 @@ fn frame_rows<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Adds what a velocity with these ω and ṗ contributes to the rows: `A` begins at its column.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_column<S: Scalar, C>(closure: &Closure<C>, direction: Vec3<S>, J: Twist<S>, A: &mut [S], n: usize) {
     match closure {
         Closure::Point => add(A, n, J.v.0),
@@ -172,7 +172,7 @@ fn add_column<S: Scalar, C>(closure: &Closure<C>, direction: Vec3<S>, J: Twist<S
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add<S: Scalar, const K: usize>(A: &mut [S], n: usize, column: [S; K]) {
     for k in 0..K {
         A[k * n] += column[k];
@@ -180,7 +180,7 @@ fn add<S: Scalar, const K: usize>(A: &mut [S], n: usize, column: [S; K]) {
 }
 
 /// Rows of an output that may be empty.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn set<S: Scalar, const K: usize>(rows: &mut [S], values: [S; K]) {
     if !rows.is_empty() {
         rows.copy_from_slice(&values);
@@ -188,14 +188,14 @@ fn set<S: Scalar, const K: usize>(rows: &mut [S], values: [S; K]) {
 }
 
 /// The components of a twist that a hinge about z constrains.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn without_wz<S: Scalar>(V: Twist<S>) -> [S; 5] {
     let [wx, wy, _, vx, vy, vz] = V.to_array();
     [wx, wy, vx, vy, vz]
 }
 
 /// 2 sin(α/2) times the axis of the rotation by α from {a} to {b}.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn rotation<S: Scalar>(motion: &RelativeMotion<S>) -> Vec3<S> {
     let R = motion.T.R.matrix();
     let half = S::from_f64(0.5);
@@ -215,7 +215,7 @@ struct Wheel<S> {
 }
 
 impl<S: Scalar> Wheel<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn new(T_ab: SE3<S>) -> Self {
         let axis = z_of(T_ab);
         let normal = Vec3([S::zero(), S::zero(), S::one()]);
@@ -225,7 +225,7 @@ impl<S: Scalar> Wheel<S> {
     }
 
     /// d(up)/dt of a wheel that turns with ω.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn rate(&self, w: Vec3<S>) -> Vec3<S> {
         let turning = w.cross(self.axis);
         let dw = -(self.axis * turning.0[2] + turning * self.axis.0[2]);
@@ -266,7 +266,7 @@ impl Quantity for ConstraintJacobian {
     .at_rest();
 }
 impl Kernel for ConstraintJacobian {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [A, dA_dtheta, phi, _]) = (c.inputs, c.outputs);
         constraint_jacobian(c.model, theta, dtheta, &mut c.memory.workspace, A, dA_dtheta, phi);

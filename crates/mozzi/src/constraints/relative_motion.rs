@@ -30,13 +30,13 @@ struct Side<S> {
 }
 
 impl<S: Scalar> Side<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn at(T: SE3<S>) -> Self {
         Side { T: T.inverse(), V: Twist::zero(), V_J: Twist::zero(), dV: Twist::zero() }
     }
 
     /// The acceleration of the anchor's origin, and its angular acceleration.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn classical(&self) -> Twist<S> {
         Twist { w: self.dV.w, v: self.dV.v + self.V.w.cross(self.V.v) }
     }
@@ -47,7 +47,7 @@ impl<S: Scalar> Side<S> {
 ///
 /// `base` is the pose of the base, and the workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the
 /// [`Way`] of the anchors, the columns of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     base: SE3<S>,
@@ -116,7 +116,7 @@ pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Ad_T A for an axis (0, 0, a, 0, 0, b).
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn seen<S: Scalar>(T: SE3<S>, A: JointAxis<S>) -> Twist<S> {
     let z = z_of(T);
     let w = z * A.a;
@@ -124,7 +124,7 @@ fn seen<S: Scalar>(T: SE3<S>, A: JointAxis<S>) -> Twist<S> {
 }
 
 /// The third axis of a rotation's matrix: z of {b} in the axes of {a}.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn z_of<S: Scalar>(T: SE3<S>) -> Vec3<S> {
     let R = T.R.matrix();
     Vec3([R.x.0[2], R.y.0[2], R.z.0[2]])

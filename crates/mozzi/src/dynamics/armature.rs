@@ -99,14 +99,14 @@ pub(super) fn add_coriolis_blocks<S: Scalar + From<C>, C: Scalar>(model: &Model<
 }
 
 /// (ω, v) of the free joint whose first velocity has the index j.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn of_free_joint<S: Scalar>(dtheta: &[S], j: usize) -> (Vec3<S>, Vec3<S>) {
     let of = |first: usize| Vec3(core::array::from_fn(|k| dtheta[first + k]));
     (of(j), of(j + 3))
 }
 
 /// Adds `[x]` to the block of X whose first entry is at (row, column).
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_cross<S: Scalar>(n: usize, X: &mut [S], [row, column]: [usize; 2], x: Vec3<S>) {
     for (r, entries) in crate::linalg::Mat3::hat(x).rows().into_iter().enumerate() {
         for (c, entry) in entries.into_iter().enumerate() {

@@ -7,7 +7,7 @@ use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 
 /// The columns of a floating base's six axes. They start at the base with a + r = −Φ𝓑̂s.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn columns_of_base<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     rates: [BaseRates<S>; 2],
@@ -43,7 +43,7 @@ pub(super) fn columns_of_base<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The columns of W joints from a slot on, or of as many as there are.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn columns_of_joints<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     first: usize,
@@ -90,7 +90,7 @@ pub(super) fn columns_of_joints<S: Scalar + From<C>, C: Scalar>(
 
 /// Sets column w, of the joint of slot i, at the links between it and the base that another limb branches off from:
 /// a = −ΦP, the wrench P being what is left of Q or of the force at the joint.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn start_at_forks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, i: usize, w: usize, workspace: &mut Workspace<S>) {
     let Workspace { turned, passed, sources, at_forks, .. } = workspace;
     let at = &passed[i];
@@ -122,7 +122,7 @@ fn start_at_forks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, i: usize, w:
 
 impl<S: Scalar> Passed<S> {
     /// (1 − U Aᵀ) P about the parent's origin.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn passed_on(&self, link: &Turned<S>, P: [S; 6]) -> Wrench<S> {
         let P = Wrench::from_array(P);
         P.about(link.p) + Wrench::from_array(self.minus_U) * link.A.dot(P)
@@ -131,7 +131,7 @@ impl<S: Scalar> Passed<S> {
 
 impl<S: Scalar> Columns<S> {
     /// Moves from the parent to a link, and returns x.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn pass<C: Scalar>(&mut self, model: &Model<C>, i: usize, workspace: &Workspace<S>) -> [[S; W]; 3] {
         let (at, parent) = (&workspace.passed[i], model.links[i - 1].parent);
         if parent + 1 != i {
@@ -175,7 +175,7 @@ struct Block<S> {
 impl<S: Scalar> Block<S> {
     /// Writes row i of the columns, and column i of their rows; keeps the columns if another limb branches off. `count`
     /// columns have started.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[allow(clippy::too_many_arguments)]
     fn write<C: Scalar>(
         &self,
@@ -236,7 +236,7 @@ impl<S: Scalar> Block<S> {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn set_row<S: Scalar>(X: &mut [S], x: &[S; W], width: usize) {
     if width == W {
         X[..W].copy_from_slice(x);
@@ -246,13 +246,13 @@ fn set_row<S: Scalar>(X: &mut [S], x: &[S; W], width: usize) {
 }
 
 /// 𝓑̂s.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn product<S: Scalar>([x, y, z]: [Wrench<S>; 3], s: Vec3<S>) -> Wrench<S> {
     x * s.0[0] + y * s.0[1] + z * s.0[2]
 }
 
 /// Φ F, Φ being symmetric.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn times<S: Scalar>(Phi: &[[S; 6]; 6], F: [S; 6]) -> [S; 6] {
     let mut a = [S::zero(); 6];
     for r in 0..6 {
@@ -262,7 +262,7 @@ pub(super) fn times<S: Scalar>(Phi: &[[S; 6]; 6], F: [S; 6]) -> [S; 6] {
 }
 
 /// y += k x.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn add<const K: usize, S: Scalar>(y: &mut [S; K], k: S, x: [S; K]) {
     for w in 0..K {
         y[w] = x[w].mul_add(k, y[w]);
@@ -270,7 +270,7 @@ pub(super) fn add<const K: usize, S: Scalar>(y: &mut [S; K], k: S, x: [S; K]) {
 }
 
 /// The same of K twists, by components.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn shift_rows<const K: usize, S: Scalar>(a: &mut [[S; K]; 6], [x, y, z]: [S; 3]) {
     let [f, g, h, ..] = *a;

@@ -86,7 +86,7 @@ pub(super) fn articulated_derivatives<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Tips to base: U, 𝓑̂, y and Q of each link.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn inward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, X: &mut [S]) {
     let slots = model.links.len() + 1;
@@ -125,7 +125,7 @@ fn inward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Work
 }
 
 /// The columns of 𝓑 in the base's axes.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn columns<S: Scalar>(B: CoriolisFactor<S>, R: Mat3<S>) -> [Wrench<S>; 3] {
     let (K, f) = ((R * B.K * R.transpose()).transpose(), R * (B.f + B.f));
     let ([x, y, z], o) = (f.0, S::zero());
@@ -137,7 +137,7 @@ fn columns<S: Scalar>(B: CoriolisFactor<S>, R: Mat3<S>) -> [Wrench<S>; 3] {
 }
 
 /// Keeps the joints' own terms: X and Y have them at their places in ∂τ.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn take_blocks<S: Scalar, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, [X, Y]: [&[S]; 2]) {
     let n = model.n();
     for place in model.places() {
@@ -156,7 +156,7 @@ fn take_blocks<S: Scalar, C: Scalar>(model: &Model<C>, workspace: &mut Workspace
 }
 
 /// Multiplies M⁻¹ by the entries of the blocks off the diagonal, and subtracts.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn multiply_blocks<S: Scalar, C: Scalar>(
     model: &Model<C>,
     workspace: &Workspace<S>,
@@ -179,7 +179,7 @@ fn multiply_blocks<S: Scalar, C: Scalar>(
 }
 
 /// Base to tips: Φ of each link, and the accelerations with which its columns start.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn outward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>) {
     let slots = model.links.len() + 1;
@@ -215,7 +215,7 @@ fn outward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Wor
 }
 
 /// A twist about the link's origin instead of the parent's: v + p × ω.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn shift<S: Scalar>(a: &mut [S; 6], [x, y, z]: [S; 3]) {
     let [f, g, h, ..] = *a;
@@ -224,13 +224,13 @@ fn shift<S: Scalar>(a: &mut [S; 6], [x, y, z]: [S; 3]) {
     a[5] = y.mul_add(-f, x.mul_add(g, a[5]));
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn dot<S: Scalar>(a: [S; 6], b: [S; 6]) -> S {
     Twist::from_array(a).dot(Wrench::from_array(b))
 }
 
 /// A⁻¹ of a symmetric positive definite A.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn inverse_6<S: Scalar>(A: [[S; 6]; 6]) -> [[S; 6]; 6] {
     let mut inverse = [[S::zero(); 6]; 6];
     for r in 0..6 {
@@ -242,7 +242,7 @@ fn inverse_6<S: Scalar>(A: [[S; 6]; 6]) -> [[S; 6]; 6] {
     inverse
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn make_symmetric<S: Scalar>(A: &mut [[S; 6]; 6]) {
     for r in 1..6 {
         for c in 0..r {

@@ -98,7 +98,7 @@ fn rest<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// n zeros, taken from the workspace; the caller must give them back.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
     let mut zero = core::mem::take(&mut workspace.vector);
     zero.fill(S::zero());
@@ -120,7 +120,7 @@ impl Quantity for BiasForces {
     .uses(Uses::ALL);
 }
 impl Kernel for BiasForces {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [h, ..]) = (c.inputs, c.outputs);
         bias_forces(c.model, theta, dtheta, c.environment, &mut c.memory.workspace, h);

@@ -46,7 +46,7 @@ pub(super) fn centroidal_frame<S: Scalar + From<C>, C: Scalar>(
     SE3 { R: base_pose(model, theta).R.inverse(), p: center_in_base(model, theta, workspace) }
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn one_over_mass<S: Scalar + From<C>, C: Scalar>(model: &Model<C>) -> S {
     S::one() / S::from(model.mass())
 }
@@ -66,7 +66,7 @@ impl Quantity for CenterOfMass {
     .needs_mass();
 }
 impl Kernel for CenterOfMass {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [p, ..]) = (c.inputs, c.outputs);
         p.copy_from_slice(&center_of_mass(c.model, theta, &mut c.memory.workspace).0);
@@ -88,7 +88,7 @@ impl Quantity for CenterOfMassVelocity {
     .needs_mass();
 }
 impl Kernel for CenterOfMassVelocity {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [dc, ..]) = (c.inputs, c.outputs);
         let f = momentum(c.model, theta, dtheta, &mut c.memory.workspace).f;
@@ -111,7 +111,7 @@ impl Quantity for CenterOfMassAcceleration {
     .needs_mass();
 }
 impl Kernel for CenterOfMassAcceleration {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, ..], [ddc, ..]) = (c.inputs, c.outputs);
         let df = momentum_rate(c.model, theta, dtheta, ddtheta, &mut c.memory.workspace).f;
@@ -134,7 +134,7 @@ impl Quantity for CenterOfMassJacobian {
     .needs_mass();
 }
 impl Kernel for CenterOfMassJacobian {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [J, ..], n) = (c.inputs, c.outputs, c.model.n());
         let columns = sized(&mut c.memory.wrenches, n, Wrench::zero());

@@ -23,7 +23,7 @@ impl Quantity for CentroidalMomentumMatrix {
     .needs_mass();
 }
 impl Kernel for CentroidalMomentumMatrix {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [A, ..], Memory { workspace, wrenches, .. }) = (c.inputs, c.outputs, c.memory);
         let T_bg = centroidal_frame(c.model, theta, workspace);
@@ -49,7 +49,7 @@ impl Quantity for CentroidalMomentumBias {
     .at_rest();
 }
 impl Kernel for CentroidalMomentumBias {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, zero, ..], [b, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
         let T_bg = centroidal_frame(c.model, theta, w);

@@ -42,7 +42,7 @@ pub(super) struct BaseRates<S> {
 
 impl<S: Scalar> BaseRates<S> {
     /// (r_e, s_e).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn of(&self, e: Twist<S>) -> (Twist<S>, Vec3<S>) {
         let (r, s) = (self.X.ad() * e, e.w * self.sigma);
         match self.Y {
@@ -55,7 +55,7 @@ impl<S: Scalar> BaseRates<S> {
     }
 
     /// The six numbers r_eᵀ F + s_eᵀ m.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn dot(&self, F: Wrench<S>, m: Vec3<S>) -> Wrench<S> {
         let row = self.X.ad().transpose() * F + Wrench { m: m * self.sigma, f: Vec3::zero() };
         match self.Y {
@@ -162,7 +162,7 @@ struct Bodies<'w, S> {
 }
 
 /// Fills the joints' entries, and their rows and columns at a floating base.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip] // one equation a line
 fn fill<S: Scalar + From<C>, C: Scalar, P: Path<S>>(
     model: &Model<C>, path: P, pairs: Pairs<S>, bodies: Bodies<S>,
@@ -293,7 +293,7 @@ pub(super) fn carried_together<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[track_caller]
 pub(super) fn check_size<S: Scalar, C: Scalar>(model: &Model<C>, X: &[S]) {
     let n = model.n();
@@ -310,7 +310,7 @@ fn add_cross<S: Scalar>(X: &mut [S], n: usize, j: usize, column: Wrench<S>, row:
 }
 
 /// Adds entries of a column, from `at` on.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_column<const W: usize, S: Scalar>(X: &mut [S], n: usize, at: usize, entries: [S; W]) {
     for w in 0..W {
         X[at + w * n] += entries[w];
@@ -318,7 +318,7 @@ fn add_column<const W: usize, S: Scalar>(X: &mut [S], n: usize, at: usize, entri
 }
 
 /// Adds entries of a row, from `at` on.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_row<const W: usize, S: Scalar>(X: &mut [S], at: usize, entries: [S; W]) {
     let X = &mut X[at..at + W];
     for w in 0..W {

@@ -94,7 +94,7 @@ impl Quantity for CoriolisMatrix {
     );
 }
 impl Kernel for CoriolisMatrix {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [C, dM, ..], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
         // one call for both, so that it is compiled once

@@ -131,7 +131,7 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
 
 /// Outward from the base: the rates of the axes, twists and accelerations, 𝓕, and 𝒢 and 𝓑 or X, 𝒢X and 𝓑ᵀX of each
 /// link.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, dtheta: &[S], ddtheta: &[S], x: Option<&[S]>, workspace: &mut Workspace<S>,

@@ -81,7 +81,7 @@ impl Quantity for KineticEnergy {
     .is_of_masses();
 }
 impl Kernel for KineticEnergy {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [energy, ..]) = (c.inputs, c.outputs);
         energy[0] = kinetic_energy(c.model, theta, dtheta, c.environment.base_twist, &mut c.memory.workspace);
@@ -104,7 +104,7 @@ impl Quantity for PotentialEnergy {
     .is_of_masses();
 }
 impl Kernel for PotentialEnergy {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [energy, ..]) = (c.inputs, c.outputs);
         energy[0] = potential_energy(c.model, theta, c.environment.gravity, &mut c.memory.workspace);

@@ -80,7 +80,7 @@ impl Quantity for EnergyGradients {
     .is_of_masses();
 }
 impl Kernel for EnergyGradients {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [a, b, d, _], e) = (c.inputs, c.outputs, c.environment);
         let Memory { workspace, matrix, .. } = c.memory;

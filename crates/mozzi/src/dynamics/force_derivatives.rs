@@ -92,7 +92,7 @@ impl Quantity for GravityForcesDerivative {
             .uses(Uses::GRAVITY);
 }
 impl Kernel for GravityForcesDerivative {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [dg, ..]) = (c.inputs, c.outputs);
         gravity_forces_derivative(c.model, theta, c.environment.gravity, &mut c.memory.workspace, dg);
@@ -114,7 +114,7 @@ impl Quantity for TipForcesDerivative {
     .uses(Uses::WRENCHES);
 }
 impl Kernel for TipForcesDerivative {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [dtau, ..]) = (c.inputs, c.outputs);
         tip_forces_derivative(c.model, theta, c.environment.applied, &mut c.memory.workspace, dtau);
@@ -135,7 +135,7 @@ impl Quantity for MassMatrixProductDerivative {
     );
 }
 impl Kernel for MassMatrixProductDerivative {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, x, ..], [dMx, ..]) = (c.inputs, c.outputs);
         mass_matrix_product_derivative(c.model, theta, x, &mut c.memory.workspace, dMx);

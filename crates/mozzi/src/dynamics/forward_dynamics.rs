@@ -102,7 +102,7 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
 
 /// Outward from the base, with no joint accelerating: 𝒱 of each link, its own part of 𝒱̇ (without the parent's), and
 /// its own 𝓕 and 𝒢.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>,
@@ -125,7 +125,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Inward from the tips: frees each joint and passes the remaining inertia and wrench to the parent.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn free_joints<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
@@ -179,7 +179,7 @@ fn free_joints<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
 }
 
 /// Outward from the base: accelerations.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn accelerations<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
@@ -215,7 +215,7 @@ impl Quantity for ForwardDynamics {
     .divides();
 }
 impl Kernel for ForwardDynamics {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, tau, ..], [ddtheta, ..]) = (c.inputs, c.outputs);
         forward_dynamics(c.model, theta, dtheta, tau, c.environment, &mut c.memory.workspace, ddtheta);

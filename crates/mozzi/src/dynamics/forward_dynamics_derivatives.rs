@@ -99,7 +99,7 @@ impl Quantity for ForwardDynamicsDerivatives {
     .divides();
 }
 impl Kernel for ForwardDynamicsDerivatives {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, tau, ..], [ddtheta, a, b, d_tau], w) = (c.inputs, c.outputs, &mut c.memory.workspace);
         forward_dynamics_derivatives(c.model, theta, dtheta, tau, c.environment, w, ddtheta, [a, b, d_tau]);

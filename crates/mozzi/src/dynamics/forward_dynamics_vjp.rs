@@ -80,7 +80,7 @@ pub(super) fn solved<S: Scalar + From<C>, C: Scalar>(
 /// 7.3). Wrenches P go inward, accelerations a outward:
 ///
 /// > u = x − AᵀP, P_p += P + U u, then y = u/d − Uᵀa, with a = a_p from the parent, a += A y
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip] // one equation a line
 fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, x: &mut [S]) {
     let slots = model.links.len() + 1;
@@ -136,7 +136,7 @@ impl Quantity for ForwardDynamicsVjp {
     .divides();
 }
 impl Kernel for ForwardDynamicsVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, tau, x], [a, b, d, _]) = (c.inputs, c.outputs);
         let Memory { workspace, matrix, .. } = c.memory;

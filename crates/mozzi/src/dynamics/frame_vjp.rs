@@ -66,7 +66,7 @@ pub fn frame_acceleration_vjp<S: Scalar + From<C>, C: Scalar>(
     of_frame(model, [theta, dtheta, ddtheta], frame, w, workspace, products);
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn of_frame<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     [theta, dtheta, ddtheta]: [&[S]; 3],
@@ -107,7 +107,7 @@ impl Quantity for FrameTwistVjp {
     .of(Of::Frame);
 }
 impl Kernel for FrameTwistVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, w, _], [a, b, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, matrix, .. } = c.memory;
@@ -131,7 +131,7 @@ impl Quantity for FrameAccelerationVjp {
     .of(Of::Frame);
 }
 impl Kernel for FrameAccelerationVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, w], [a, b, d, _]) = (c.inputs, c.outputs);
         let (w, workspace) = (Wrench::from_array(six(w)), &mut c.memory.workspace);

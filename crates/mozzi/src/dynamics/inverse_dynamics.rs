@@ -96,7 +96,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
 
 /// Outward from the base: 𝒱 and 𝒱̇ of each link, and the wrench for its own motion in 𝓕. `ONE_AXIS`: all joints have
 /// one axis.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
@@ -121,7 +121,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
 /// The twist that moves a joint's axis, up to a multiple of the axis itself. For the first or only axis of a joint it
 /// is the twist `V_i` of its own link; for a further axis of a ball or a free joint it is that of the joint's parent
 /// about the joint's origin, with v set to zero.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn carrier_twist<S: Scalar + From<C>, C: Scalar>(
     link: &Lifted<C, S>,
     T: SE3<S>,
@@ -153,7 +153,7 @@ impl Quantity for InverseDynamics {
     .uses(Uses::ALL);
 }
 impl Kernel for InverseDynamics {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, ..], [tau, ..]) = (c.inputs, c.outputs);
         inverse_dynamics(c.model, theta, dtheta, ddtheta, c.environment, &mut c.memory.workspace, tau);

@@ -55,7 +55,7 @@ impl Quantity for InverseDynamicsDerivatives {
     .uses(Uses::ALL);
 }
 impl Kernel for InverseDynamicsDerivatives {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, ..], [a, b, M, _]) = (c.inputs, c.outputs);
         inverse_dynamics_derivatives(

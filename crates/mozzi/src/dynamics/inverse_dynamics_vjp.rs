@@ -80,7 +80,7 @@ impl Quantity for InverseDynamicsVjp {
     .uses(Uses::ALL);
 }
 impl Kernel for InverseDynamicsVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, x], [a, b, d, _]) = (c.inputs, c.outputs);
         let (workspace, outputs) = (&mut c.memory.workspace, [a, b, d]);

@@ -28,7 +28,7 @@ impl Quantity for JointFriction {
     );
 }
 impl Kernel for JointFriction {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([dtheta, ..], [f, ..]) = (c.inputs, c.outputs);
         for (j, f) in f.iter_mut().enumerate() {

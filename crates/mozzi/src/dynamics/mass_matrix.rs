@@ -57,7 +57,7 @@ impl Quantity for MassMatrix {
     );
 }
 impl Kernel for MassMatrix {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [M, ..]) = (c.inputs, c.outputs);
         mass_matrix(c.model, theta, &mut c.memory.workspace, M);

@@ -43,7 +43,7 @@ impl Quantity for MassMatrixInverse {
     .divides();
 }
 impl Kernel for MassMatrixInverse {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [inverse, ..]) = (c.inputs, c.outputs);
         mass_matrix_inverse(c.model, theta, &mut c.memory.workspace, inverse);

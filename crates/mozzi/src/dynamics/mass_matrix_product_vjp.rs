@@ -58,7 +58,7 @@ impl Quantity for MassMatrixProductVjp {
     );
 }
 impl Kernel for MassMatrixProductVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ddtheta, x, _], [a, b, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, matrix, .. } = c.memory;

@@ -59,7 +59,7 @@ impl Quantity for ForwardDynamicsByMassMatrix {
     .divides();
 }
 impl Kernel for ForwardDynamicsByMassMatrix {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, tau, ..], [ddtheta, ..], n) = (c.inputs, c.outputs, c.model.n());
         let Memory { workspace, matrix, .. } = c.memory;

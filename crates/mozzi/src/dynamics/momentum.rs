@@ -165,7 +165,7 @@ impl Quantity for Momentum {
     .is_of_masses();
 }
 impl Kernel for Momentum {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [h, ..], point) = (c.inputs, c.outputs, c.point);
         h.copy_from_slice(&momentum(c.model, theta, dtheta, &mut c.memory.workspace).about(point).to_array());
@@ -188,7 +188,7 @@ impl Quantity for MomentumRate {
     .is_of_masses();
 }
 impl Kernel for MomentumRate {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, ..], [dh, ..], point) = (c.inputs, c.outputs, c.point);
         let rate = momentum_rate(c.model, theta, dtheta, ddtheta, &mut c.memory.workspace);

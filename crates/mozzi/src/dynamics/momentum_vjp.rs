@@ -64,7 +64,7 @@ pub fn momentum_rate_vjp<S: Scalar + From<C>, C: Scalar>(
     workspace.vector = zero;
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn of_momentum<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     [theta, dtheta, ddtheta, zero]: [&[S]; 4],
@@ -102,7 +102,7 @@ impl Quantity for MomentumVjp {
     .is_of_masses();
 }
 impl Kernel for MomentumVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, w, _], [a, b, ..]) = (c.inputs, c.outputs);
         let Memory { workspace, matrix, .. } = c.memory;
@@ -127,7 +127,7 @@ impl Quantity for MomentumRateVjp {
     .is_of_masses();
 }
 impl Kernel for MomentumRateVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, w], [a, b, d, _]) = (c.inputs, c.outputs);
         let (w, workspace) = (Twist::from_array(six(w)), &mut c.memory.workspace);

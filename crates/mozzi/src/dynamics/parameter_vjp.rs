@@ -89,13 +89,13 @@ pub fn forward_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The gradient by a small motion of all links beyond, in the coordinates of the twists: those of what carries them.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn of_all_beyond<S: Scalar>([V, dV, X]: [Twist<S>; 3], Q: Wrench<S>, R: Vec3<S>, F: Wrench<S>) -> Wrench<S> {
     BaseRates { X: dV, Y: Some(V), sigma: S::zero() }.dot(Q, R) + X.ad().transpose() * F
 }
 
 /// The workspace holds T_{i,i−1}(θ).
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip] // one equation a line
 fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, [theta, dtheta, ddtheta, x]: [&[S]; 4],
@@ -173,7 +173,7 @@ impl Quantity for InverseDynamicsParameterVjp {
     .is_of_masses();
 }
 impl Kernel for InverseDynamicsParameterVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let [theta, dtheta, ddtheta, x] = c.inputs;
         let (environment, workspace) = (c.environment, &mut c.memory.workspace);
@@ -198,7 +198,7 @@ impl Quantity for ForwardDynamicsParameterVjp {
     .is_of_masses();
 }
 impl Kernel for ForwardDynamicsParameterVjp {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, tau, x], n) = (c.inputs, c.model.n());
         let Memory { workspace, matrix, .. } = c.memory;

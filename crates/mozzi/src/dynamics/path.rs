@@ -50,17 +50,17 @@ pub(super) trait Path<S: Scalar> {
     /// The same for the pairs by rates.
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S;
     /// The links that are processed together, of which k is the last.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn row(&self, _: usize) -> Option<(&Run, &Row<S>)> {
         None
     }
     /// A_kᵀF of each link of a row.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn forces(&self, row: &Row<S>, F: Wrench<S>) -> [S; TOGETHER] {
         row.forces(None, F)
     }
     /// Moved past a row, to the point p.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn about(&self, _: Vec3<S>, load: Self::Carried) -> Self::Carried {
         load
     }
@@ -74,31 +74,31 @@ pub(super) struct LinkFrames<'w, S> {
 
 impl<S: Scalar> Path<S> for LinkFrames<'_, S> {
     type Carried = Load<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn taken(&self, _: usize, load: Load<S>) -> Load<S> {
         load
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn carried(&self, link: usize, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> Load<S> {
         let (T, Ad) = (&self.T[link], self.T[link].Ad().transpose());
         Load { GA: Ad * GA, BtA: T.R.inverse_mul(BtA), of_theta: Ad * of_theta, of_rates: Ad * of_rates }
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn load(&self, load: Load<S>) -> Load<S> {
         load
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn force<C: Scalar>(&self, _: usize, link: &Lifted<C, S>, F: Wrench<S>) -> S
     where
         S: From<C>,
     {
         link.A() * F
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
         self.pairs.by_theta[k].dot(GA, BtA)
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
         self.pairs.by_rates[k].dot(GA, BtA)
     }
@@ -118,7 +118,7 @@ pub(super) struct FourWrenches<S: Scalar> {
 }
 
 impl<S: Scalar> Abreast<'_, S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn four(&self, a: Vec3<S>, b: Vec3<S>, c: Vec3<S>, d: Vec3<S>) -> [S::Four; 3] {
         let ([ax, ay, az], [bx, by, bz], [cx, cy, cz], [dx, dy, dz]) = (a.0, b.0, c.0, d.0);
         [
@@ -129,7 +129,7 @@ impl<S: Scalar> Abreast<'_, S> {
     }
 
     /// Rᵀx of four vectors.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn turned(&self, R: &SO3<S>, [x, y, z]: [S::Four; 3]) -> [S::Four; 3] {
         let ([a, b, c], o) = (R.matrix().rows(), S::Four::new(self.at_once, [S::zero(); 4]));
         [
@@ -142,7 +142,7 @@ impl<S: Scalar> Abreast<'_, S> {
 
 impl<S: Scalar> Path<S> for Abreast<'_, S> {
     type Carried = FourWrenches<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn taken(&self, _: usize, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> FourWrenches<S> {
         FourWrenches {
             m: self.four(GA.m, of_rates.m, of_theta.m, BtA),
@@ -150,7 +150,7 @@ impl<S: Scalar> Path<S> for Abreast<'_, S> {
         }
     }
     /// Of each wrench m ↦ Rᵀ(m + f × p), f ↦ Rᵀf.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn carried(&self, link: usize, FourWrenches { m: [x, y, z], f: [u, v, w] }: FourWrenches<S>) -> FourWrenches<S> {
         let SE3 { R, p: Vec3([px, py, pz]) } = &self.frames.T[link];
         let x = v.mul_add(*pz, w.mul_add(-*py, x));
@@ -158,7 +158,7 @@ impl<S: Scalar> Path<S> for Abreast<'_, S> {
         let z = u.mul_add(*py, v.mul_add(-*px, z));
         FourWrenches { m: self.turned(R, [x, y, z]), f: self.turned(R, [u, v, w]) }
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn load(&self, FourWrenches { m: [x, y, z], f: [u, v, w] }: FourWrenches<S>) -> Load<S> {
         let ([x, y, z], [u, v, w]) = ([x.numbers(), y.numbers(), z.numbers()], [u.numbers(), v.numbers(), w.numbers()]);
         Load {
@@ -168,18 +168,18 @@ impl<S: Scalar> Path<S> for Abreast<'_, S> {
             BtA: Vec3([x[3], y[3], z[3]]),
         }
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn force<C: Scalar>(&self, k: usize, link: &Lifted<C, S>, F: Wrench<S>) -> S
     where
         S: From<C>,
     {
         self.frames.force(k, link, F)
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
         self.frames.by_theta(k, GA, BtA)
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
         self.frames.by_rates(k, GA, BtA)
     }
@@ -195,7 +195,7 @@ pub(super) struct BaseAxes<'w, S> {
 
 impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
     type Carried = Load<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn taken(&self, i: usize, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> Load<S> {
         let R = self.links[i].R;
         Load {
@@ -205,41 +205,41 @@ impl<S: Scalar> Path<S> for BaseAxes<'_, S> {
             of_rates: Wrench { m: R * of_rates.m, f: R * of_rates.f },
         }
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn carried(&self, link: usize, load: Load<S>) -> Load<S> {
         self.about(self.links[link].p, load)
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn load(&self, load: Load<S>) -> Load<S> {
         load
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn about(&self, p: Vec3<S>, Load { GA, BtA, of_theta, of_rates }: Load<S>) -> Load<S> {
         Load { GA: GA.about(p), BtA, of_theta: of_theta.about(p), of_rates: of_rates.about(p) }
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn force<C: Scalar>(&self, k: usize, _: &Lifted<C, S>, F: Wrench<S>) -> S
     where
         S: From<C>,
     {
         self.links[k].A.dot(F)
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_theta(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
         let (r, s) = self.links[k].by_theta;
         r.dot(GA) + s.dot(BtA)
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_rates(&self, k: usize, GA: Wrench<S>, BtA: Vec3<S>) -> S {
         let (r, s) = self.links[k].by_rates;
         r.dot(GA) + s.dot(BtA)
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn row(&self, k: usize) -> Option<(&Run, &Row<S>)> {
         let at = self.runs.ending_at(k)?;
         Some((&self.runs.list[at], &self.rows[at]))
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn forces(&self, row: &Row<S>, F: Wrench<S>) -> [S; TOGETHER] {
         row.forces(self.at_once, F)
     }

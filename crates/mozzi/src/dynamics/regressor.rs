@@ -69,7 +69,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// The entries of Y that belong to joints and rotors: calls `add(row, column, entry)` for each.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn joint_entries<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -184,7 +184,7 @@ impl Quantity for Regressor {
     .uses(Uses::GRAVITY.and(Uses::BASE_TWIST).and(Uses::BASE_ACCELERATION));
 }
 impl Kernel for Regressor {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, ..], [Y, ..]) = (c.inputs, c.outputs);
         regressor(c.model, theta, dtheta, ddtheta, c.environment, &mut c.memory.workspace, Y);
@@ -210,7 +210,7 @@ impl Quantity for EnergyRegressors {
     .is_of_masses();
 }
 impl Kernel for EnergyRegressors {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [kinetic, potential, ..], e) = (c.inputs, c.outputs, c.environment);
         energy_regressors(c.model, theta, dtheta, e.base_twist, e.gravity, &mut c.memory.workspace, kinetic, potential);

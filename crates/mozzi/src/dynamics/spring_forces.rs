@@ -50,7 +50,7 @@ impl Quantity for SpringForces {
     );
 }
 impl Kernel for SpringForces {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [f, ..]) = (c.inputs, c.outputs);
         spring_forces(c.model, theta, f);

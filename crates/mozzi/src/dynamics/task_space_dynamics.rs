@@ -70,7 +70,7 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
 }
 
 /// aᵀb.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
     let mut sum = S::zero();
     for (&a, &b) in a.iter().zip(b) {
@@ -96,7 +96,7 @@ impl Quantity for TaskSpaceDynamics {
     .divides();
 }
 impl Kernel for TaskSpaceDynamics {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [Lambda, eta, ..], task) = (c.inputs, c.outputs, c.of.task());
         let Memory { workspace, tasks, .. } = c.memory;

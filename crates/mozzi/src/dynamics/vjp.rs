@@ -29,19 +29,19 @@ use crate::spatial::{Twist, Wrench};
 
 /// An environment without gravity and wrenches, in which the acceleration of {s} is `V_s`: the motion at θ̇ = 0 with θ̇
 /// in place of θ̈ has 𝒱 in place of 𝒱̇ and the momentum 𝒢𝒱 in place of 𝓕.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn from_rest<'a, S: Scalar>(V_s: Twist<S>) -> Environment<'a, S> {
     Environment { base_acceleration: V_s, ..Environment::with_gravity(Vec3::zero()) }
 }
 
 /// A twist given in {s}, in the base's coordinates.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn in_base<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], X_s: Twist<S>) -> Twist<S> {
     base_pose(model, theta).inverse().Ad() * X_s
 }
 
 /// How the rates x move a floating base.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn of_base<S: Scalar, C: Scalar>(model: &Model<C>, x: &[S]) -> Twist<S> {
     match x.first_chunk() {
         Some(&first) if model.is_floating() => Twist::from_array(first),
@@ -83,7 +83,7 @@ pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
 }
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip] // one equation a line
 fn inward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, workspace: &mut Workspace<S>, [d_theta, d_dtheta, d_ddtheta]: [&mut [S]; 3],

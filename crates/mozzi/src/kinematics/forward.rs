@@ -61,7 +61,7 @@ impl Quantity for ForwardKinematics {
     .of(Of::Frame);
 }
 impl Kernel for ForwardKinematics {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [T, ..]) = (c.inputs, c.outputs);
         T.copy_from_slice(forward_kinematics(c.model, theta, c.of.frame()).to_matrix().as_flattened());
@@ -82,7 +82,7 @@ impl Quantity for FramePoses {
     );
 }
 impl Kernel for FramePoses {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [T, ..]) = (c.inputs, c.outputs);
         let poses = sized(&mut c.memory.poses, c.model.frames().len(), SE3::identity());

@@ -58,7 +58,7 @@ impl Quantity for FrameAcceleration {
     .of(Of::Frame);
 }
 impl Kernel for FrameAcceleration {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, ..], [a, ..]) = (c.inputs, c.outputs);
         a.copy_from_slice(&frame_acceleration(c.model, theta, dtheta, ddtheta, c.of.frame()).to_array());

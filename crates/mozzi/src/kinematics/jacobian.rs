@@ -126,7 +126,7 @@ impl Quantity for SpaceJacobian {
     .of(Of::Frame);
 }
 impl Kernel for SpaceJacobian {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [J, ..], frame) = (c.inputs, c.outputs, c.of.frame());
         let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
@@ -150,7 +150,7 @@ impl Quantity for BodyJacobian {
     .of(Of::Frame);
 }
 impl Kernel for BodyJacobian {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [J, ..], frame) = (c.inputs, c.outputs, c.of.frame());
         let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());

@@ -115,7 +115,7 @@ impl Quantity for SpaceJacobianDerivative {
     .of(Of::Frame);
 }
 impl Kernel for SpaceJacobianDerivative {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [H, ..], n) = (c.inputs, c.outputs, c.model.n());
         let columns = sized(&mut c.memory.twists, n * n, Twist::zero());
@@ -139,7 +139,7 @@ impl Quantity for BodyJacobianDerivative {
     .of(Of::Frame);
 }
 impl Kernel for BodyJacobianDerivative {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [H, ..], n) = (c.inputs, c.outputs, c.model.n());
         let columns = sized(&mut c.memory.twists, n * n, Twist::zero());
@@ -149,7 +149,7 @@ impl Kernel for BodyJacobianDerivative {
 }
 
 /// From H[i n + j] = ∂J_i/∂θ_j to one 6 × n matrix for each j.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn by_velocity<S: Scalar>(columns: &[Twist<S>], n: usize, H: &mut [S]) {
     for (j, matrix) in H.chunks_exact_mut((6 * n).max(1)).enumerate() {
         by_rows((0..n).map(|i| columns[i * n + j].to_array()), matrix);

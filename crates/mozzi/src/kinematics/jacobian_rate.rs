@@ -109,7 +109,7 @@ impl Quantity for SpaceJacobianRate {
     .of(Of::Frame);
 }
 impl Kernel for SpaceJacobianRate {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
         let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
@@ -133,7 +133,7 @@ impl Quantity for BodyJacobianRate {
     .of(Of::Frame);
 }
 impl Kernel for BodyJacobianRate {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [dJ, ..], frame) = (c.inputs, c.outputs, c.of.frame());
         let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());

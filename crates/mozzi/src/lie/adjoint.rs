@@ -23,7 +23,7 @@ pub struct LieBracketTranspose<S = f64>(Twist<S>);
 
 impl<S: Scalar> Adjoint<S> {
     /// `[Ad_T]`ᵀ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transpose(self) -> AdjointTranspose<S> {
         AdjointTranspose(self.0)
     }
@@ -36,7 +36,7 @@ impl<S: Scalar> Adjoint<S> {
 
 impl<S: Scalar> AdjointTranspose<S> {
     /// `[Ad_T]`ᵀ F + `to`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn mul_add(self, F: Wrench<S>, to: Wrench<S>) -> Wrench<S> {
         let SE3 { R, p } = self.0;
         let R = R.matrix();
@@ -46,7 +46,7 @@ impl<S: Scalar> AdjointTranspose<S> {
 
 impl<S: Scalar> LieBracket<S> {
     /// `[ad_V]`ᵀ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transpose(self) -> LieBracketTranspose<S> {
         LieBracketTranspose(self.0)
     }
@@ -72,7 +72,7 @@ fn columns<S: Scalar>(map: impl Fn(Twist<S>) -> Twist<S>) -> [[S; 6]; 6] {
 
 impl<S: Scalar> Mul<Twist<S>> for Adjoint<S> {
     type Output = Twist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, V: Twist<S>) -> Twist<S> {
         let SE3 { R, p } = self.0;
         let w = R * V.w;
@@ -82,7 +82,7 @@ impl<S: Scalar> Mul<Twist<S>> for Adjoint<S> {
 
 impl<S: Scalar> Mul<Wrench<S>> for AdjointTranspose<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, F: Wrench<S>) -> Wrench<S> {
         let SE3 { R, p } = self.0;
         Wrench { m: R.inverse_mul(F.f.cross_add(p, F.m)), f: R.inverse_mul(F.f) }
@@ -91,7 +91,7 @@ impl<S: Scalar> Mul<Wrench<S>> for AdjointTranspose<S> {
 
 impl<S: Scalar> Mul<Twist<S>> for LieBracket<S> {
     type Output = Twist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, V: Twist<S>) -> Twist<S> {
         let Twist { w, v } = self.0;
         Twist { w: w.cross(V.w), v: v.cross_add(V.w, w.cross(V.v)) }
@@ -100,7 +100,7 @@ impl<S: Scalar> Mul<Twist<S>> for LieBracket<S> {
 
 impl<S: Scalar> Mul<Wrench<S>> for LieBracketTranspose<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, F: Wrench<S>) -> Wrench<S> {
         let Twist { w, v } = self.0;
         Wrench { m: F.m.cross_add(w, F.f.cross(v)), f: F.f.cross(w) }

@@ -21,7 +21,7 @@ pub(crate) struct RotationVector<S> {
 
 impl<S: Scalar> RotationVector<S> {
     /// From a quaternion (w, v) of any length but 0.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(w: S, v: Vec3<S>) -> Self {
         let sign = w.sgn();
         let sign = sign + S::one() - sign * sign; // 1 where w = 0
@@ -43,7 +43,7 @@ impl<S: Scalar> RotationVector<S> {
 
     /// ∂φ for a small rotation δ of the rotated body, in its own axes, q ⊗ (1, δ/2): the inverse of the right Jacobian,
     /// I + ½`[φ]` + (1 − (‖φ‖/2) cot(‖φ‖/2))/‖φ‖² `[φ]`².
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn derivative(&self) -> Mat3<S> {
         let V = Mat3::hat(self.v);
         Mat3::identity() + Mat3::hat(self.phi) * S::from_f64(0.5) + V * V * self.curvature
@@ -51,21 +51,21 @@ impl<S: Scalar> RotationVector<S> {
 }
 
 /// 1/s, and u' = u/s² of half the angle.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn half<S: Scalar>(u: S) -> [S; 2] {
     let over = S::one() / (S::one() + (S::one() + u).sqrt());
     [over, u * over * over]
 }
 
 /// D(u) from 1/s and D(u').
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn doubled<S: Scalar>(over: S, D: S) -> S {
     over * over * (S::from_f64(2.0) * over).mul_add(D, S::one())
 }
 
 /// D(u) = Σ (−u)ᵏ/(2k + 3) for u ≤ tan²(π/16). Each term adds 4.6 binary digits; the scalar's precision sets the number
 /// of terms.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn series<S: Scalar>(u: S) -> S {
     let mut sum = S::zero();
     for k in (0..=S::DIGITS * 2 / 9).rev() {

@@ -18,37 +18,37 @@ pub struct SE3<S = f64> {
 
 impl<S: Scalar> SE3<S> {
     /// From orientation and position.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(R: SO3<S>, p: Vec3<S>) -> Self {
         SE3 { R, p }
     }
 
     /// I.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn identity() -> Self {
         SE3 { R: SO3::identity(), p: Vec3::zero() }
     }
 
     /// (I, p).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn translation(p: [S; 3]) -> Self {
         SE3 { R: SO3::identity(), p: Vec3(p) }
     }
 
     /// T⁻¹ = (Rᵀ, −Rᵀp).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn inverse(self) -> Self {
         SE3 { R: self.R.inverse(), p: -self.R.inverse_mul(self.p) }
     }
 
     /// From the quaternion (w, x, y, z) of the orientation, of any length but 0, and the origin (x, y, z).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_pose([w, x, y, z, px, py, pz]: [S; 7]) -> Self {
         SE3 { R: SO3::from_quaternion(w, Vec3([x, y, z])), p: Vec3([px, py, pz]) }
     }
 
     /// `[Ad_T]`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn Ad(self) -> Adjoint<S> {
         Adjoint(self)
     }
@@ -61,7 +61,7 @@ impl<S: Scalar> SE3<S> {
     }
 
     /// Each entry by f, a conversion between scalars.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<U>(self, f: impl Fn(S) -> U + Copy) -> SE3<U> {
         SE3 { R: self.R.map(f), p: self.p.map(f) }
     }
@@ -133,7 +133,7 @@ impl<S: Real> SE3<S> {
 
 impl<S: Scalar> Mul for SE3<S> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, o: Self) -> Self {
         SE3 { R: self.R * o.R, p: self.R * o.p + self.p }
     }
@@ -142,7 +142,7 @@ impl<S: Scalar> Mul for SE3<S> {
 /// T acting on a point: Rx + p.
 impl<S: Scalar> Mul<Vec3<S>> for SE3<S> {
     type Output = Vec3<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, x: Vec3<S>) -> Vec3<S> {
         self.R * x + self.p
     }

@@ -35,25 +35,25 @@ impl core::error::Error for InvalidRotation {}
 
 impl<S: Scalar> SO3<S> {
     /// I.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn identity() -> Self {
         SO3(Mat3::identity())
     }
 
     /// The matrix R.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn matrix(self) -> Mat3<S> {
         self.0
     }
 
     /// R⁻¹ = Rᵀ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn inverse(self) -> Self {
         SO3(self.0.transpose())
     }
 
     /// R⁻¹v.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn inverse_mul(self, v: Vec3<S>) -> Vec3<S> {
         self.0.transpose_mul(v)
     }
@@ -69,7 +69,7 @@ impl<S: Scalar> SO3<S> {
     }
 
     /// The rotation of a quaternion (s, v), of any length but 0: R = I + 2 (s`[v]` + `[v]`²) / (s² + ‖v‖²).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_quaternion(s: S, v: Vec3<S>) -> Self {
         let two_over = S::from_f64(2.0) / (s * s + v.dot(v));
         let (Vec3([x, y, z]), Vec3([sx, sy, sz])) = (v * two_over, v * (s * two_over));
@@ -84,7 +84,7 @@ impl<S: Scalar> SO3<S> {
     }
 
     /// Each entry by f, a conversion between scalars.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<U>(self, f: impl Fn(S) -> U) -> SO3<U> {
         SO3(self.0.map(f))
     }
@@ -174,7 +174,7 @@ impl<S: Real> SO3<S> {
 
 impl<S: Scalar> Mul for SO3<S> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, o: Self) -> Self {
         SO3(self.0 * o.0)
     }
@@ -182,7 +182,7 @@ impl<S: Scalar> Mul for SO3<S> {
 
 impl<S: Scalar> Mul<Vec3<S>> for SO3<S> {
     type Output = Vec3<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, v: Vec3<S>) -> Vec3<S> {
         self.0 * v
     }

@@ -18,25 +18,25 @@ linear_space!(Twist { w, v });
 
 impl<S: Scalar> Twist<S> {
     /// 0.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Twist { w: Vec3::zero(), v: Vec3::zero() }
     }
 
     /// (0, v).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn linear(v: Vec3<S>) -> Self {
         Twist { w: Vec3::zero(), v }
     }
 
     /// From (ω, v) in one array, angular first.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_array([a, b, c, x, y, z]: [S; 6]) -> Self {
         Twist { w: Vec3([a, b, c]), v: Vec3([x, y, z]) }
     }
 
     /// (ω, v) in one array, angular first.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_array(self) -> [S; 6] {
         let ([a, b, c], [x, y, z]) = (self.w.0, self.v.0);
         [a, b, c, x, y, z]
@@ -54,13 +54,13 @@ impl<S: Scalar> Twist<S> {
     }
 
     /// `[ad_V]`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn ad(self) -> LieBracket<S> {
         LieBracket(self)
     }
 
     /// The power ωᵀm + vᵀf, in watts.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn dot(self, F: Wrench<S>) -> S {
         self.w.dot_add(F.m, self.v.dot(F.f))
     }
@@ -84,7 +84,7 @@ impl<S: Scalar> Twist<S> {
     }
 
     /// The six unit twists: rotations about x, y, z, then translations along them.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn axes() -> [Self; 6] {
         let mut axes = [Self::zero(); 6];
         for k in 0..3 {
@@ -95,7 +95,7 @@ impl<S: Scalar> Twist<S> {
     }
 
     /// Each component by f.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<U>(self, f: impl Fn(S) -> U + Copy) -> Twist<U> {
         Twist { w: self.w.map(f), v: self.v.map(f) }
     }

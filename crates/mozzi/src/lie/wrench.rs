@@ -17,19 +17,19 @@ linear_space!(Wrench { m, f });
 
 impl<S: Scalar> Wrench<S> {
     /// 0.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Wrench { m: Vec3::zero(), f: Vec3::zero() }
     }
 
     /// From (m, f) in one array, angular first.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_array([a, b, c, x, y, z]: [S; 6]) -> Self {
         Wrench { m: Vec3([a, b, c]), f: Vec3([x, y, z]) }
     }
 
     /// (m, f) in one array, angular first.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_array(self) -> [S; 6] {
         let ([a, b, c], [x, y, z]) = (self.m.0, self.f.0);
         [a, b, c, x, y, z]
@@ -47,7 +47,7 @@ impl<S: Scalar> Wrench<S> {
     }
 
     /// The same wrench, or momentum, about a point p of its frame instead of the origin: (m − p × f, f).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn about(self, p: Vec3<S>) -> Self {
         Wrench { m: self.f.cross_add(p, self.m), f: self.f }
     }
@@ -58,7 +58,7 @@ impl<S: Scalar> Wrench<S> {
     }
 
     /// Each component by f.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<U>(self, f: impl Fn(S) -> U + Copy) -> Wrench<U> {
         Wrench { m: self.m.map(f), f: self.f.map(f) }
     }

@@ -24,19 +24,19 @@ pub(crate) struct ByRates<S> {
 }
 
 impl<S: Scalar> ByTheta<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         ByTheta { r: Twist::zero(), s: [S::zero(); 2] }
     }
 
     /// 𝒢r + 𝓑s.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn column(self, G: SpatialInertia<S>, B: CoriolisFactor<S>) -> Wrench<S> {
         G * self.r + B * self.s
     }
 
     /// rᵀF + sᵀm.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn dot(self, F: Wrench<S>, m: Vec3<S>) -> S {
         let ([x, y], [u, v, _]) = (self.s, m.0);
         x.mul_add(u, y.mul_add(v, self.r.dot(F)))
@@ -44,19 +44,19 @@ impl<S: Scalar> ByTheta<S> {
 }
 
 impl<S: Scalar> ByRates<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         ByRates { r: AxisRate::zero(), s: S::zero() }
     }
 
     /// 𝒢r + 𝓑s.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn column(self, G: SpatialInertia<S>, B: CoriolisFactor<S>) -> Wrench<S> {
         G * self.r + B * JointAxis { a: self.s, b: S::zero() }
     }
 
     /// rᵀF + sᵀm.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn dot(self, F: Wrench<S>, m: Vec3<S>) -> S {
         self.s.mul_add(m.0[2], self.r.dot(F))
     }
@@ -76,7 +76,7 @@ pub(crate) struct Turned<S> {
 }
 
 impl<S: Scalar> Turned<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         let none = (Twist::zero(), Vec3::zero());
         Turned { R: SO3::identity(), p: Vec3::zero(), A: Twist::zero(), by_theta: none, by_rates: none }

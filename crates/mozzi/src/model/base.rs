@@ -19,7 +19,7 @@ pub enum Base {
 
 impl Base {
     /// The number of its positions in θ: 0 or 7.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn positions(self) -> usize {
         match self {
             Base::Fixed => 0,
@@ -28,7 +28,7 @@ impl Base {
     }
 
     /// The number of its velocities in θ̇: 0 or 6.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn velocities(self) -> usize {
         match self {
             Base::Fixed => 0,
@@ -44,7 +44,7 @@ impl<C: Scalar> Model<C> {
     }
 
     /// Is the base floating?
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn is_floating(&self) -> bool {
         self.base == Base::Floating
     }

@@ -59,14 +59,14 @@ impl<S: Scalar> Source<S> {
 }
 
 impl<S: Scalar> Columns<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         let o = [S::zero(); W];
         Columns { a: [[o; 6]; 3], s: [[o; 3]; 2] }
     }
 
     /// Copies the first `count` columns.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn copy_from(&mut self, of: &Self, count: usize) {
         for (to, of) in self.a.as_flattened_mut().iter_mut().zip(of.a.as_flattened()) {
             to[..count].copy_from_slice(&of[..count]);

@@ -31,13 +31,13 @@ pub struct Environment<'a, S = f64> {
 
 impl<S: Scalar> Environment<'_, S> {
     /// {s} at rest, no applied wrenches.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn with_gravity(gravity: Vec3<S>) -> Self {
         Environment { gravity, base_twist: Twist::zero(), base_acceleration: Twist::zero(), applied: &[] }
     }
 
     /// The same environment with another number type, with the wrenches stored in `applied`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<'a, U>(
         &self,
         f: impl Fn(S) -> U + Copy,
@@ -54,7 +54,7 @@ impl<S: Scalar> Environment<'_, S> {
     }
 
     /// 𝒱̇₀ of the recursion: gravity acts like a base that accelerates upwards.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn proper_base_acceleration(&self) -> Twist<S> {
         self.base_acceleration - Twist::linear(self.gravity)
     }

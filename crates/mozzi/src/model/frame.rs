@@ -19,7 +19,7 @@ pub struct Frame<C = f64> {
 }
 
 impl<C: Scalar> Frame<C> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn lift<S: Scalar + From<C>>(&self) -> Frame<S> {
         Frame { slot: self.slot, T: self.T.map(S::from) }
     }
@@ -59,7 +59,7 @@ impl<C: Scalar> Model<C> {
         })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn frame_at<S: Scalar + From<C>>(&self, frame: FrameId) -> Frame<S> {
         self.frames[frame.0].lift()
     }

@@ -82,14 +82,14 @@ pub(crate) struct Lifted<'m, C, S> {
 }
 
 impl<'m, C, S> Lifted<'m, C, S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(link: &'m Link<C>) -> Self {
         Lifted { link, motion: link.motion, number: PhantomData }
     }
 
     /// The same. If all joints of the model have one axis, the code for other joints is left out at compile time; it
     /// would cost 5 %.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn among<const ONE_AXIS: bool>(self) -> Self {
         if ONE_AXIS { Lifted { motion: Motion::Screw, ..self } } else { self }
     }
@@ -98,7 +98,7 @@ impl<'m, C, S> Lifted<'m, C, S> {
 /// Access to the link's fields.
 impl<C, S> Deref for Lifted<'_, C, S> {
     type Target = Link<C>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn deref(&self) -> &Link<C> {
         self.link
     }
@@ -106,37 +106,37 @@ impl<C, S> Deref for Lifted<'_, C, S> {
 
 impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     /// A.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn A(&self) -> JointAxis<S> {
         self.link.A.map(S::from)
     }
 
     /// The joint's screw axis.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn screw(&self) -> JointAxis<S> {
         self.link.screw.map(S::from)
     }
 
     /// 𝒢.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn G(&self) -> SpatialInertia<S> {
         self.link.G.map(S::from)
     }
 
     /// The joint's own variable, q = ratio · θ + offset.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn own(&self, theta: &[S]) -> S {
         S::from(self.link.ratio).mul_add(theta[self.link.q], S::from(self.link.offset))
     }
 
     /// T_{i,i−1}(θ) = e^{−`[A]`q} M_{i,i−1}.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transform(&self, theta: &[S]) -> SE3<S> {
         self.transform_with(self.sin_cos(theta), theta)
     }
 
     /// T_{i,i−1}(θ), given the sine and cosine of the joint's angle.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transform_with(&self, sin_cos: (S, S), theta: &[S]) -> SE3<S> {
         let M = || self.link.M.map(S::from);
         match self.motion {
@@ -160,13 +160,13 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
 
     /// The sine and cosine of the joint's angle; for an axis of a ball or a free joint, unused numbers, which cost less
     /// than a branch.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn sin_cos(&self, theta: &[S]) -> (S, S) {
         self.screw().sin_cos(self.own(theta))
     }
 
     /// Is it the one axis of its joint?
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn has_one_axis(&self) -> bool {
         let is_one = self.motion == Motion::Screw;
         if !is_one {
@@ -176,7 +176,7 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
     }
 
     /// Is it a further axis of the joint whose first axes are its ancestors'?
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn is_next(&self) -> bool {
         self.motion == Motion::Next
     }
@@ -184,11 +184,11 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
 
 /// Marks a branch as unlikely for the compiler.
 #[cold]
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn rarely() {}
 
 /// P T: a configuration in a frame, expressed in the frame whose axes are its y, z and x.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn in_turn<S: Scalar>(T: SE3<S>) -> SE3<S> {
     let (R, [x, y, z]) = (T.R.matrix(), T.p.0);
     SE3 { R: SO3(Mat3 { x: R.y, y: R.z, z: R.x }), p: Vec3([y, z, x]) }

@@ -138,14 +138,14 @@ pub(crate) struct Structure {
 impl<C: Scalar> Model<C> {
     /// The number n of velocities: the length of θ̇, θ̈ and τ. One for each independent joint, three for a ball, six
     /// for a free joint, after six of a floating base.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn n(&self) -> usize {
         self.armature.len()
     }
 
     /// The number of positions: the length of θ. n, and one more for a floating base, each ball and each free joint: a
     /// quaternion has four entries.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn nq(&self) -> usize {
         self.structure.names[0].len()
     }
@@ -162,7 +162,7 @@ impl<C: Scalar> Model<C> {
     }
 
     /// Are the axes of these slots, the inner one first, of one ball or free joint?
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn is_one_joint(&self, inner: usize, outer: usize) -> bool {
         // the axes of one joint are consecutive: each but the first is a next one
         self.links[inner..outer].iter().all(|link| link.motion == Motion::Next)
@@ -191,7 +191,7 @@ impl<C: Scalar> Model<C> {
     }
 
     /// The first slot of the links that one joint and its mimic joints move, 0 for a joint that moves a link alone.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn first_sibling(&self, slot: usize) -> usize {
         self.structure.siblings.get(slot).copied().unwrap_or_default()
     }
@@ -277,7 +277,7 @@ impl<C: Scalar> Model<C> {
     }
 
     /// Panics unless each slice is as long as it should be: a wrong length is a bug of the caller.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[track_caller]
     pub(crate) fn assert_lengths<const K: usize>(&self, positions: usize, velocities: [usize; K]) {
         assert!(positions == self.nq(), "theta has {positions} entries, expected {}", self.nq());

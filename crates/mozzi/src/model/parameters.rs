@@ -119,7 +119,7 @@ impl<C: Scalar> Model<C> {
     }
 
     /// That link's frame, relative to the slot's normal frame.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn link_frame(&self, slot: usize) -> SE3<C> {
         self.frames[self.link_at(slot)].T
     }

@@ -22,7 +22,7 @@ pub enum Freedom {
 
 impl Freedom {
     /// The number of positions: 1, 4 or 7.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn positions(self) -> usize {
         match self {
             Freedom::One => 1,
@@ -32,7 +32,7 @@ impl Freedom {
     }
 
     /// The number of velocities, accelerations and forces: 1, 3 or 6.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn velocities(self) -> usize {
         match self {
             Freedom::One => 1,
@@ -55,13 +55,13 @@ pub struct Place {
 
 impl Place {
     /// The range of its numbers in θ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn positions(&self) -> Range<usize> {
         self.q..self.q + self.freedom.positions()
     }
 
     /// The range of its numbers in θ̇, θ̈ and τ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn velocities(&self) -> Range<usize> {
         self.j..self.j + self.freedom.velocities()
     }

@@ -15,7 +15,7 @@ pub(crate) struct Rotor<C> {
 
 impl<C: Scalar> Rotor<C> {
     /// J θ̇, or J θ̈.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rate<S: Scalar + From<C>>(&self, dtheta: &[S]) -> S {
         let mut sum = S::zero();
         for &(j, entry) in &self.J {
@@ -25,7 +25,7 @@ impl<C: Scalar> Rotor<C> {
     }
 
     /// Adds x Jᵀ to a force.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn add<S: Scalar + From<C>>(&self, x: S, tau: &mut [S]) {
         for &(j, entry) in &self.J {
             tau[j] = S::from(entry).mul_add(x, tau[j]);

@@ -48,7 +48,7 @@ impl Runs {
     }
 
     /// The number of the run whose last link this is.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn ending_at(&self, slot: usize) -> Option<usize> {
         self.ending_at[slot].checked_sub(1)
     }
@@ -72,7 +72,7 @@ impl<S: Scalar> Row<S> {
     }
 
     /// Fills the row from the links, with the pairs that are `taken`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn gather(&mut self, run: &Run, links: &[Turned<S>], taken: [bool; 2]) {
         let mut p = Vec3::zero();
         for w in (0..W).rev() {
@@ -91,7 +91,7 @@ impl<S: Scalar> Row<S> {
     }
 
     /// A_kᵀF of each link.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn forces(&self, at_once: Option<FourAtOnce>, F: Wrench<S>) -> [S; W] {
         match at_once {
             Some(at_once) => dots_of_four(at_once, &self.A, F.to_array()),
@@ -100,7 +100,7 @@ impl<S: Scalar> Row<S> {
     }
 
     /// rᵀ(𝒢ᶜA) + sᵀ(𝓑ᶜᵀA) of each link.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn products(pairs: &[[S; W]; 9], GA: Wrench<S>, BtA: Vec3<S>) -> [S; W] {
         let ([a, b, c], [x, y, z], [u, v, w]) = (GA.m.0, GA.f.0, BtA.0);
         dots(pairs, [a, b, c, x, y, z, u, v, w])
@@ -108,7 +108,7 @@ impl<S: Scalar> Row<S> {
 }
 
 /// Sets number w of each list: those of r, then those of s.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn set<const K: usize, S: Scalar>(lists: &mut [[S; W]; K], w: usize, r: Twist<S>, s: Vec3<S>) {
     let ([a, b, c], [x, y, z], [u, v, t]) = (r.w.0, r.v.0, s.0);
     for (list, number) in lists.iter_mut().zip([a, b, c, x, y, z, u, v, t]) {
@@ -117,7 +117,7 @@ fn set<const K: usize, S: Scalar>(lists: &mut [[S; W]; K], w: usize, r: Twist<S>
 }
 
 /// Σ_k x_k list_k.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn dots<const K: usize, S: Scalar>(lists: &[[S; W]; K], x: [S; K]) -> [S; W] {
     let mut sum = [S::zero(); W];
     for k in 0..K {
@@ -129,7 +129,7 @@ fn dots<const K: usize, S: Scalar>(lists: &[[S; W]; K], x: [S; K]) -> [S; W] {
 }
 
 /// The same in registers of four, which the compiler does not choose if the numbers go to different places.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn dots_of_four<const K: usize, S: Scalar>(at_once: FourAtOnce, lists: &[[S; W]; K], x: [S; K]) -> [S; W] {
     let mut sums = [S::Four::new(at_once, [S::zero(); 4]); 2];
     for k in 0..K {

@@ -20,7 +20,7 @@ pub(crate) struct Spring<C> {
 
 impl<C: Scalar> Spring<C> {
     /// The spring's displacement from 0, one number per velocity of the joint: θ, or φ for a ball.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn stretch<S: Scalar>(place: &Place, theta: &[S]) -> [S; 3] {
         match place.freedom {
             Freedom::One => [theta[place.q], S::zero(), S::zero()],
@@ -29,7 +29,7 @@ impl<C: Scalar> Spring<C> {
     }
 
     /// Adds f_s = K θ − p to a force.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn add_force<S: Scalar + From<C>>(&self, theta: &[S], tau: &mut [S]) {
         let (stiffness, preload) = (S::from(self.stiffness), S::from(self.preload));
         for (j, x) in self.place.velocities().zip(Self::stretch(&self.place, theta)) {
@@ -38,7 +38,7 @@ impl<C: Scalar> Spring<C> {
     }
 
     /// Adds ∂f_s/∂θ to the n × n entries of ∂τ/∂θ: K on the diagonal; for a ball, K ∂φ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn add_stiffness<S: Scalar + From<C>>(&self, n: usize, theta: &[S], d_theta: &mut [S]) {
         let (stiffness, j) = (S::from(self.stiffness), self.place.j);
         match self.place.freedom {
@@ -54,7 +54,7 @@ impl<C: Scalar> Spring<C> {
     }
 
     /// Adds xᵀ∂f_s/∂θ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn add_vjp<S: Scalar + From<C>>(&self, theta: &[S], x: &[S], d_theta: &mut [S]) {
         let (stiffness, j) = (S::from(self.stiffness), self.place.j);
         match self.place.freedom {
@@ -70,7 +70,7 @@ impl<C: Scalar> Spring<C> {
     }
 
     /// ½K θ² − p θ: the energy of the spring, less that at θ = 0.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn energy<S: Scalar + From<C>>(&self, theta: &[S]) -> S {
         let (half, preload) = (S::from_f64(0.5) * S::from(self.stiffness), S::from(self.preload));
         let stretch = Vec3(Self::stretch(&self.place, theta));
@@ -82,7 +82,7 @@ impl<C: Scalar> Spring<C> {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn of_ball<S: Scalar>(place: &Place, theta: &[S]) -> RotationVector<S> {
     let [w, x, y, z] = core::array::from_fn(|k| theta[place.q + k]);
     RotationVector::new(w, Vec3([x, y, z]))

@@ -51,7 +51,7 @@ pub(crate) struct Own<C> {
 
 impl<C> TieKind<C> {
     /// The number of its rows.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rows(&self) -> usize {
         match self {
             TieKind::Joint { .. } => 1,
@@ -146,7 +146,7 @@ pub(crate) struct Way<'m, C> {
 }
 
 impl<'m, C> Way<'m, C> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(links: &'m [Link<C>], [a, b]: [Option<usize>; 2]) -> Self {
         Way { links, slots: [a.unwrap_or(0), b.unwrap_or(0)] }
     }
@@ -155,7 +155,7 @@ impl<'m, C> Way<'m, C> {
 impl<C> Iterator for Way<'_, C> {
     type Item = (usize, usize);
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn next(&mut self) -> Option<(usize, usize)> {
         let [a, b] = self.slots;
         if a == b {
@@ -169,7 +169,7 @@ impl<C> Iterator for Way<'_, C> {
 
 impl<C: Scalar> Own<C> {
     /// The joint's position, ratio · θ + offset.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn position<S: Scalar + From<C>>(&self, theta: &[S]) -> S {
         S::from(self.ratio).mul_add(theta[self.q], S::from(self.offset))
     }

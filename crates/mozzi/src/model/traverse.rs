@@ -21,25 +21,25 @@ pub(crate) struct ToBase;
 
 impl<C: Scalar> Model<C> {
     /// The link of a slot other than the base's.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn link<S>(&self, slot: usize) -> Lifted<'_, C, S> {
         Lifted::new(&self.links[slot - 1])
     }
 
     /// Base to tips.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn outward<S>(&self) -> Traverse<'_, C, S, Outward> {
         Traverse { links: &self.links, slot: 1, types: PhantomData }
     }
 
     /// Tips to base.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn inward<S>(&self) -> Traverse<'_, C, S, Inward> {
         Traverse { links: &self.links, slot: self.links.len(), types: PhantomData }
     }
 
     /// A slot's link, its parent, and so on down to the base.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn to_base<S>(&self, slot: usize) -> Traverse<'_, C, S, ToBase> {
         Traverse { links: &self.links, slot, types: PhantomData }
     }
@@ -47,7 +47,7 @@ impl<C: Scalar> Model<C> {
 
 impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, Outward> {
     type Item = (usize, Lifted<'m, C, S>);
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn next(&mut self) -> Option<Self::Item> {
         let link = self.links.get(self.slot - 1)?;
         self.slot += 1;
@@ -57,7 +57,7 @@ impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, Outward> {
 
 impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, Inward> {
     type Item = (usize, Lifted<'m, C, S>);
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn next(&mut self) -> Option<Self::Item> {
         let slot = self.slot;
         let link = self.links.get(slot.wrapping_sub(1))?;
@@ -68,7 +68,7 @@ impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, Inward> {
 
 impl<'m, C: Scalar, S> Iterator for Traverse<'m, C, S, ToBase> {
     type Item = (usize, Lifted<'m, C, S>);
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn next(&mut self) -> Option<Self::Item> {
         let slot = self.slot;
         let link = self.links.get(slot.wrapping_sub(1))?;

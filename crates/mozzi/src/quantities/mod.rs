@@ -119,7 +119,7 @@ impl Query<'_> {
     }
 
     /// The given inputs at their positions, after a check of their number.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn inputs<'a, S>(&self, given: &[&'a [S]]) -> Inputs<'a, S> {
         assert!(given.len() == self.declaration().inputs.len(), "{} inputs of {}", given.len(), self.name());
         let input = |k: usize| if k < given.len() { given[k] } else { &[] };
@@ -127,7 +127,7 @@ impl Query<'_> {
     }
 
     /// The same for outputs.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn outputs<'a, S>(&self, given: &'a mut [&mut [S]]) -> Outputs<'a, S> {
         match given {
             _ if given.len() != self.declaration().outputs.len() => {

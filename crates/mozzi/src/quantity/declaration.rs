@@ -82,7 +82,7 @@ impl Declaration {
         Declaration { first_output, ..self }
     }
     /// The kernel's output that is this quantity's first one.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn first_output(&self) -> usize {
         self.first_output
     }
@@ -264,7 +264,7 @@ impl Uses {
         self.0 & other.0 == other.0
     }
     /// The environment with these parts only; the others are zero gravity, rest, and no applied wrenches.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn of<'a, S: Scalar>(self, environment: &Environment<'a, S>) -> Environment<'a, S> {
         let nothing = Environment::with_gravity(crate::Vec3::zero());
         Environment {

@@ -81,7 +81,7 @@ impl<S: Scalar> Memory<S> {
 }
 
 /// The first `length` entries of a list, which grows if it is too short.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn sized<T: Clone>(list: &mut Vec<T>, length: usize, fill: T) -> &mut [T] {
     if list.len() < length {
         list.resize(length, fill);
@@ -90,13 +90,13 @@ pub(crate) fn sized<T: Clone>(list: &mut Vec<T>, length: usize, fill: T) -> &mut
 }
 
 /// The six numbers of a twist or a wrench.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn six<S: Copy>(x: &[S]) -> [S; 6] {
     core::array::from_fn(|k| x[k])
 }
 
 /// A matrix of six rows from its columns.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn by_rows<S: Scalar>(columns: impl ExactSizeIterator<Item = [S; 6]>, output: &mut [S]) {
     let n = columns.len();
     for (j, column) in columns.enumerate() {

@@ -42,7 +42,7 @@ pub struct Rare;
 
 impl Kernel for Rare {
     const HAS_REGISTERS: bool = false;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(_call: Call<S, C>) {}
 }
 
@@ -79,7 +79,7 @@ pub(crate) type Entry<S, C> = fn(&Subject, &Model<C>, &Inputs<S>, &Environment<S
 
 /// A quantity's inputs, environment and outputs, routed to its kernel: inputs that it does not have are zeros, parts of
 /// the environment that it does not use absent.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn evaluate<Q: Quantity, S: Scalar + From<C>, C: Scalar>(
     of: &Subject,
     model: &Model<C>,

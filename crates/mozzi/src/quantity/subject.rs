@@ -18,11 +18,11 @@ pub struct Subject<'a> {
 
 impl Subject<'_> {
     /// The frame; [`Query::check`] ensures that there is one.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn frame(&self) -> FrameId {
         self.frame.expect("a frame: checked by Query::check")
     }
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn task(&self) -> Task<'_> {
         Task { frame: self.frame(), coordinates: self.coordinates, rows: self.rows }
     }

@@ -24,13 +24,13 @@ pub(crate) struct GyroscopicWrench<S> {
 }
 
 impl<S: Scalar> AngularVelocity<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn twist(self) -> Twist<S> {
         Twist { w: self.0, v: Vec3::zero() }
     }
 
     /// `[ad_V]`ᵀ.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn ad_transpose(self) -> SpinBracketTranspose<S> {
         SpinBracketTranspose(self.0)
     }
@@ -38,7 +38,7 @@ impl<S: Scalar> AngularVelocity<S> {
 
 impl<S: Scalar> Twist<S> {
     /// ω alone.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn spin(self) -> AngularVelocity<S> {
         AngularVelocity(self.w)
     }
@@ -46,7 +46,7 @@ impl<S: Scalar> Twist<S> {
     /// The classical acceleration of a frame with the twist V = `self` and its rate V̇: (ω, 0), and (ω̇, v̇ + ω × v),
     /// whose linear part is the acceleration of the origin. This is the motion in a frame that moves, at this moment,
     /// with the origin, in a straight line at constant speed.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn classical_acceleration(self, dV: Self) -> (AngularVelocity<S>, Self) {
         (self.spin(), Twist { w: dV.w, v: self.w.cross_add(self.v, dV.v) })
     }
@@ -54,7 +54,7 @@ impl<S: Scalar> Twist<S> {
 
 impl<S: Scalar> Mul<AngularVelocity<S>> for Adjoint<S> {
     type Output = Twist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, V: AngularVelocity<S>) -> Twist<S> {
         let w = self.0.R * V.0;
         Twist { w, v: self.0.p.cross(w) }
@@ -64,7 +64,7 @@ impl<S: Scalar> Mul<AngularVelocity<S>> for Adjoint<S> {
 /// 𝒢V: the momentum.
 impl<S: Scalar> Mul<AngularVelocity<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, V: AngularVelocity<S>) -> Wrench<S> {
         Wrench { m: self.I * V.0, f: V.0.cross(self.mc) }
     }
@@ -72,7 +72,7 @@ impl<S: Scalar> Mul<AngularVelocity<S>> for SpatialInertia<S> {
 
 impl<S: Scalar> Mul<Wrench<S>> for SpinBracketTranspose<S> {
     type Output = GyroscopicWrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, P: Wrench<S>) -> GyroscopicWrench<S> {
         GyroscopicWrench { w: self.0, P }
     }
@@ -80,7 +80,7 @@ impl<S: Scalar> Mul<Wrench<S>> for SpinBracketTranspose<S> {
 
 impl<S: Scalar> Neg for GyroscopicWrench<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Wrench<S> {
         Wrench { m: self.w.cross(self.P.m), f: self.w.cross(self.P.f) }
     }
@@ -88,7 +88,7 @@ impl<S: Scalar> Neg for GyroscopicWrench<S> {
 
 impl<S: Scalar> Sub<GyroscopicWrench<S>> for Wrench<S> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, o: GyroscopicWrench<S>) -> Self {
         Wrench { m: o.w.cross_add(o.P.m, self.m), f: o.w.cross_add(o.P.f, self.f) }
     }

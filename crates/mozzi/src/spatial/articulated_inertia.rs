@@ -21,7 +21,7 @@ pub struct ArticulatedInertia<S = f64> {
 linear_space!(ArticulatedInertia { I, H, M });
 
 impl<S: Scalar> From<SpatialInertia<S>> for ArticulatedInertia<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from(G: SpatialInertia<S>) -> Self {
         ArticulatedInertia { I: G.I, H: Mat3::hat(G.mc), M: Sym3::diagonal(G.mass, G.mass, G.mass) }
     }
@@ -29,13 +29,13 @@ impl<S: Scalar> From<SpatialInertia<S>> for ArticulatedInertia<S> {
 
 impl<S: Scalar> ArticulatedInertia<S> {
     /// `[Ad_T]`ᵀ Ĝ `[Ad_T]`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn congruence(self, Ad: Adjoint<S>) -> Self {
         self.congruence_add(Ad, SpatialInertia::zero().into())
     }
 
     /// `[Ad_T]`ᵀ Ĝ `[Ad_T]` + `to`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn congruence_add(self, Ad: Adjoint<S>, to: Self) -> Self {
         let (P, Rt) = (Skew(Ad.0.p), Ad.0.R.matrix().transpose());
         // [Ad] = [[1, 0], [P, 1]] diag(R, R): apply P, for which Pᵀ = −P, then rotate
@@ -49,7 +49,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// Ĝ V + `to`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn mul_add(self, V: Twist<S>, to: Wrench<S>) -> Wrench<S> {
         let (I, H, M) = (self.I.to_mat3(), self.H, self.M.to_mat3());
         let row = |I: Vec3<S>, H: Vec3<S>, to| I.dot_add(V.w, H.dot_add(V.v, to));
@@ -61,7 +61,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
     }
 
     /// Ĝ − U Uᵀ/d, with 1/d given.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn minus_outer(self, U: Wrench<S>, one_over_d: S) -> Self {
         let k = -one_over_d;
         let [x, y, z] = (U.m * k).0;
@@ -83,7 +83,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
 
 impl<S: Scalar> Mul<Twist<S>> for ArticulatedInertia<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, V: Twist<S>) -> Wrench<S> {
         self.mul_add(V, Wrench::zero())
     }
@@ -91,7 +91,7 @@ impl<S: Scalar> Mul<Twist<S>> for ArticulatedInertia<S> {
 
 impl<S: Scalar> Mul<JointAxis<S>> for ArticulatedInertia<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, A: JointAxis<S>) -> Wrench<S> {
         let (Hz, I, M) = (self.H.transpose(), self.I.to_mat3(), self.M.to_mat3());
         Wrench { m: I.z.mul_add(A.a, Hz.z * A.b), f: self.H.z.mul_add(A.a, M.z * A.b) }
@@ -100,7 +100,7 @@ impl<S: Scalar> Mul<JointAxis<S>> for ArticulatedInertia<S> {
 
 impl<S: Scalar> Mul<JointAxis<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, A: JointAxis<S>) -> Wrench<S> {
         let ([x, y, _], I, o) = (self.mc.0, self.I, S::zero());
         let (a, b) = (A.a, A.b);

@@ -15,26 +15,26 @@ pub(crate) struct AxisRate<S> {
 }
 
 impl<S: Scalar> AxisRate<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         AxisRate { w: [S::zero(); 2], v: [S::zero(); 2] }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn twist(self) -> Twist<S> {
         let ([x, y], [u, v], o) = (self.w, self.v, S::zero());
         Twist { w: Vec3([x, y, o]), v: Vec3([u, v, o]) }
     }
 
     /// Its product with a wrench.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn dot(self, F: Wrench<S>) -> S {
         let ([x, y], [u, v], [mx, my, _], [fx, fy, _]) = (self.w, self.v, F.m.0, F.f.0);
         x.mul_add(mx, y.mul_add(my, u.mul_add(fx, v * fy)))
     }
 
     /// This times a rate, plus `to`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn mul_add(self, rate: S, to: Twist<S>) -> Twist<S> {
         let ([x, y], [u, v], [a, b, c], [d, e, f]) = (self.w, self.v, to.w.0, to.v.0);
         Twist {
@@ -45,7 +45,7 @@ impl<S: Scalar> AxisRate<S> {
 }
 
 impl<S: Scalar> VelocityProduct<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rate(self) -> AxisRate<S> {
         let Twist { w: Vec3([x, y, _]), v: Vec3([u, v, _]) } = self.twist();
         AxisRate { w: [x, y], v: [u, v] }
@@ -54,14 +54,14 @@ impl<S: Scalar> VelocityProduct<S> {
 
 impl<S: Scalar> Add for AxisRate<S> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, o: Self) -> Self {
         AxisRate { w: [self.w[0] + o.w[0], self.w[1] + o.w[1]], v: [self.v[0] + o.v[0], self.v[1] + o.v[1]] }
     }
 }
 
 impl<S: Scalar> AddAssign for AxisRate<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, o: Self) {
         *self = *self + o;
     }
@@ -70,7 +70,7 @@ impl<S: Scalar> AddAssign for AxisRate<S> {
 /// `[ad_V]` times the rate of an axis.
 impl<S: Scalar> Mul<AxisRate<S>> for LieBracket<S> {
     type Output = Twist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, r: AxisRate<S>) -> Twist<S> {
         let ([wx, wy, wz], [vx, vy, vz], [x, y], [u, v]) = (self.0.w.0, self.0.v.0, r.w, r.v);
         Twist {
@@ -87,7 +87,7 @@ impl<S: Scalar> Mul<AxisRate<S>> for LieBracket<S> {
 /// 𝒢 times the rate of an axis.
 impl<S: Scalar> Mul<AxisRate<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, r: AxisRate<S>) -> Wrench<S> {
         let ([cx, cy, cz], I, [x, y], [u, v]) = (self.mc.0, self.I, r.w, r.v);
         Wrench {
@@ -104,7 +104,7 @@ impl<S: Scalar> Mul<AxisRate<S>> for SpatialInertia<S> {
 /// 𝓑 times the rate of an axis, given by its angular part.
 impl<S: Scalar> Mul<[S; 2]> for CoriolisFactor<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, [x, y]: [S; 2]) -> Wrench<S> {
         let ([[a, b, _], [c, d, _], [e, g, _]], [fx, fy, fz]) =
             ([self.K.x.0, self.K.y.0, self.K.z.0], (self.f + self.f).0);

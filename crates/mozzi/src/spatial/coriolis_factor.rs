@@ -19,26 +19,26 @@ linear_space!(CoriolisFactor { K, f });
 
 impl<S: Scalar> CoriolisFactor<S> {
     /// 𝓑 of a body with the momentum P = 𝒢𝒱.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(G: SpatialInertia<S>, V: Twist<S>, P: Wrench<S>) -> Self {
         CoriolisFactor { K: G.rate(V).I.to_mat3() - Skew(P.m).to_mat3(), f: P.f }
     }
 
     /// The same about the point p, in the same axes: K + 2 `[p][f]`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn about(self, p: Vec3<S>) -> Self {
         CoriolisFactor { K: self.K + Skew(p) * Skew(self.f + self.f), f: self.f }
     }
 
     /// `[Ad_T]`ᵀ 𝓑 `[Ad_T]`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn congruence(self, Ad: Adjoint<S>) -> Self {
         let (R, about) = (Ad.0.R.matrix(), self.about(Ad.0.p));
         CoriolisFactor { K: R.transpose() * about.K * R, f: R.transpose_mul(self.f) }
     }
 
     /// 𝓑ᵀA, a moment without a force: Kᵀω + 2 f × v.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transpose_mul(self, A: JointAxis<S>) -> Vec3<S> {
         let ([x, y, z], [fx, fy, _], b) = (self.K.z.0, self.f.0, A.b + A.b);
         Vec3([A.a.mul_add(x, b * fy), A.a.mul_add(y, -(b * fx)), A.a * z])
@@ -51,7 +51,7 @@ impl<S: Scalar> CoriolisFactor<S> {
 /// > 2 (f × X_v + v × (X_ω × mc) − I y) + tr(I) y, y = ω × X_ω
 ///
 /// with (ω × r) × (X_ω × r) = r rᵀy and ∫ r rᵀ dm = ½ tr(I) − I.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn coriolis_moment<S: Scalar>(G: SpatialInertia<S>, V: Twist<S>, f: Vec3<S>, X: Twist<S>) -> Vec3<S> {
     let y = V.w.cross(X.w);
     let half = f.cross_add(X.v, V.v.cross_add(X.w.cross(G.mc), -(G.I * y)));
@@ -61,7 +61,7 @@ pub(crate) fn coriolis_moment<S: Scalar>(G: SpatialInertia<S>, V: Twist<S>, f: V
 /// 𝓑A, from A's angular part: the linear part meets zeros.
 impl<S: Scalar> Mul<Vec3<S>> for CoriolisFactor<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, w: Vec3<S>) -> Wrench<S> {
         Wrench { m: self.K * w, f: w.cross(self.f + self.f) }
     }
@@ -69,7 +69,7 @@ impl<S: Scalar> Mul<Vec3<S>> for CoriolisFactor<S> {
 
 impl<S: Scalar> Mul<JointAxis<S>> for CoriolisFactor<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, A: JointAxis<S>) -> Wrench<S> {
         let ([_, _, x], [_, _, y], [_, _, z], [fx, fy, _], a) =
             (self.K.x.0, self.K.y.0, self.K.z.0, self.f.0, A.a + A.a);

@@ -24,7 +24,7 @@ linear_space!(SpatialInertia { mass, mc, I });
 
 impl<S: Scalar> SpatialInertia<S> {
     /// 0.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         SpatialInertia { mass: S::zero(), mc: Vec3::zero(), I: Sym3::zero() }
     }
@@ -43,13 +43,13 @@ impl<S: Scalar> SpatialInertia<S> {
 
     /// `[Ad_T]`ᵀ 𝒢 `[Ad_T]`: with T = `T_ba` and 𝒢 in {b}, the same body's inertia in {a}; the general Steiner theorem
     /// (Modern Robotics 8.42).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn congruence(self, Ad: Adjoint<S>) -> Self {
         self.congruence_add(Ad, SpatialInertia::zero())
     }
 
     /// `[Ad_T]`ᵀ 𝒢 `[Ad_T]` + `to`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn congruence_add(self, Ad: Adjoint<S>, to: Self) -> Self {
         let (SE3 { R, p }, Rt) = (Ad.0, Ad.0.R.matrix().transpose());
         let about = self.about(p);
@@ -61,7 +61,7 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 
     /// The same body's inertia about the point p, in the same axes (Steiner).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn about(self, p: Vec3<S>) -> Self {
         let mc = p.mul_add(-self.mass, self.mc);
         // I about p: I + [mc − mp][p] + [p][mc], whose upper triangle is taken
@@ -76,7 +76,7 @@ impl<S: Scalar> SpatialInertia<S> {
 
     /// The rate of 𝒢, in the coordinates of a frame at rest that the body's frame passes at the twist V:
     /// −𝒢`[ad_V]` − `[ad_V]`ᵀ𝒢. Its mass is 0 and its first moment the body's linear momentum.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rate(self, V: Twist<S>) -> Self {
         let (W, I, v, mc) = (Skew(V.w), self.I.to_mat3(), Skew(V.v), Skew(self.mc));
         SpatialInertia { mass: S::zero(), mc: (self * V).f, I: Sym3::upper(W * I - I * W - (v * mc + mc * v)) }
@@ -88,7 +88,7 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 
     /// Each number by f.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<U>(self, f: impl Fn(S) -> U + Copy) -> SpatialInertia<U> {
         SpatialInertia { mass: f(self.mass), mc: self.mc.map(f), I: self.I.map(f) }
     }
@@ -97,7 +97,7 @@ impl<S: Scalar> SpatialInertia<S> {
 /// 𝒢V: the momentum (or, for an acceleration, the wrench).
 impl<S: Scalar> Mul<Twist<S>> for SpatialInertia<S> {
     type Output = Wrench<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, V: Twist<S>) -> Wrench<S> {
         Wrench { m: self.mc.cross_add(V.v, self.I * V.w), f: V.v.mul_add(self.mass, V.w.cross(self.mc)) }
     }

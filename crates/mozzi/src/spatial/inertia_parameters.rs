@@ -12,13 +12,13 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 
     /// From the ten numbers of [`to_parameters`](Self::to_parameters).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_parameters([mass, x, y, z, xx, xy, xz, yy, yz, zz]: [S; 10]) -> Self {
         SpatialInertia { mass, mc: Vec3([x, y, z]), I: Sym3 { xx, xy, xz, yy, yz, zz } }
     }
 
     /// Xᵀ𝒢A = Σ y_k π_k as the ten numbers y_k of twists X and A.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[rustfmt::skip] // as the parameters: mass, first moments, inertia
     pub fn by_parameters(X: Twist<S>, A: Twist<S>) -> [S; 10] {
         let ([x, y, z], [a, b, c], mc) = (X.w.0, A.w.0, A.v.cross_add(X.w, X.v.cross(A.w)).0);
@@ -30,7 +30,7 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 
     /// The ten inertias with one parameter 1 and the others 0; only weighted sums of them are bodies.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn units() -> [Self; 10] {
         core::array::from_fn(|k| {
             Self::from_parameters(core::array::from_fn(|i| if i == k { S::one() } else { S::zero() }))

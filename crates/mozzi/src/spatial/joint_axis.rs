@@ -22,7 +22,7 @@ pub(crate) struct JointTwist<S> {
 
 impl<S> JointAxis<S> {
     /// Each number by f.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<U>(self, f: impl Fn(S) -> U) -> JointAxis<U> {
         JointAxis { a: f(self.a), b: f(self.b) }
     }
@@ -30,13 +30,13 @@ impl<S> JointAxis<S> {
 
 impl<S: Scalar> JointAxis<S> {
     /// (sin aq, cos aq).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn sin_cos(self, q: S) -> (S, S) {
         (self.a * q).sin_cos()
     }
 
     /// e^{−`[A]`q} M: rotate M by −aq about z, given [`sin_cos`](Self::sin_cos), and translate it by −bq along z.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transform(self, (s, c): (S, S), q: S, M: SE3<S>) -> SE3<S> {
         let ([px, py, pz], R) = (M.p.0, M.R.matrix());
         SE3 {
@@ -46,13 +46,13 @@ impl<S: Scalar> JointAxis<S> {
     }
 
     /// `[ad_A]`ᵀF.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn ad_transpose(self, F: Wrench<S>) -> Wrench<S> {
         let ([mx, my, _], [fx, fy, _], o, JointAxis { a, b }) = (F.m.0, F.f.0, S::zero(), self);
         Wrench { m: Vec3([my.mul_add(a, fy * b), -mx.mul_add(a, fx * b), o]), f: Vec3([fy * a, -(fx * a), o]) }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn twist(self) -> Twist<S> {
         let o = S::zero();
         Twist { w: Vec3([o, o, self.a]), v: Vec3([o, o, self.b]) }
@@ -61,7 +61,7 @@ impl<S: Scalar> JointAxis<S> {
 
 impl<S: Scalar> Mul<S> for JointAxis<S> {
     type Output = JointTwist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, rate: S) -> JointTwist<S> {
         JointTwist { w: self.a * rate, v: self.b * rate }
     }
@@ -70,7 +70,7 @@ impl<S: Scalar> Mul<S> for JointAxis<S> {
 /// AᵀF, the force or torque that the joint's motor feels.
 impl<S: Scalar> Mul<Wrench<S>> for JointAxis<S> {
     type Output = S;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, F: Wrench<S>) -> S {
         let ([.., mz], [.., fz]) = (F.m.0, F.f.0);
         self.a.mul_add(mz, self.b * fz)
@@ -79,7 +79,7 @@ impl<S: Scalar> Mul<Wrench<S>> for JointAxis<S> {
 
 impl<S: Scalar> Add<JointTwist<S>> for Twist<S> {
     type Output = Twist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, o: JointTwist<S>) -> Twist<S> {
         let ([x, y, z], [a, b, c]) = (self.w.0, self.v.0);
         Twist { w: Vec3([x, y, z + o.w]), v: Vec3([a, b, c + o.v]) }
@@ -94,7 +94,7 @@ pub(crate) struct VelocityProduct<S> {
 }
 
 impl<S: Scalar> VelocityProduct<S> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn twist(self) -> Twist<S> {
         let ([wx, wy, _], [vx, vy, _], o) = (self.V.w.0, self.V.v.0, S::zero());
         let JointTwist { w, v } = self.A;
@@ -104,7 +104,7 @@ impl<S: Scalar> VelocityProduct<S> {
 
 impl<S: Scalar> Mul<JointTwist<S>> for LieBracket<S> {
     type Output = VelocityProduct<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, A: JointTwist<S>) -> VelocityProduct<S> {
         VelocityProduct { V: self.0, A }
     }
@@ -112,7 +112,7 @@ impl<S: Scalar> Mul<JointTwist<S>> for LieBracket<S> {
 
 impl<S: Scalar> Mul<JointAxis<S>> for LieBracket<S> {
     type Output = VelocityProduct<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, A: JointAxis<S>) -> VelocityProduct<S> {
         VelocityProduct { V: self.0, A: JointTwist { w: A.a, v: A.b } }
     }
@@ -120,7 +120,7 @@ impl<S: Scalar> Mul<JointAxis<S>> for LieBracket<S> {
 
 impl<S: Scalar> Add<VelocityProduct<S>> for Twist<S> {
     type Output = Twist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, o: VelocityProduct<S>) -> Twist<S> {
         let ([wx, wy, _], [vx, vy, _], JointTwist { w, v }) = (o.V.w.0, o.V.v.0, o.A);
         let ([x, y, z], [a, b, c]) = (self.w.0, self.v.0);

@@ -148,7 +148,7 @@ impl<S: Scalar> Mul<ScrewAxis<S>> for LieBracket<S> {
 /// A θ̇: the twist of the joint's rate; or A θ, for the exponential.
 impl<S: Scalar> Mul<S> for ScrewAxis<S> {
     type Output = Twist<S>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, rate: S) -> Twist<S> {
         self.0 * rate
     }
