@@ -99,6 +99,19 @@ fn long_rows_of_sparse_results_pass_through_slots() {
     assert!(!arm.text().contains("_slots"));
 }
 
+/// Long programs by columns, whose numbers are compared above.
+#[test]
+fn the_threads_of_a_block_pass_the_phases_of_a_long_program_together() {
+    let model = robots().pop().expect("the floating quadruped");
+    let source =
+        |model: &Model| Source::new(model, InverseDynamicsDerivatives, form(Precision::F32, CudaLayout::Columns));
+    let long = source(&model).expect("a source");
+    let waits = long.text().matches("if (phases) __syncthreads();").count();
+    assert!(waits >= 5 && long.text().contains("<true, true>(") && long.threads() == 256, "{waits}");
+    let arm = source(&embedded("panda")).expect("a source");
+    assert!(!arm.text().contains("phases") && arm.threads() == 128);
+}
+
 #[test]
 fn packed_matrices_are_the_lower_triangle_by_rows() {
     let (model, query) = (embedded("panda"), Query::from(MassMatrix));

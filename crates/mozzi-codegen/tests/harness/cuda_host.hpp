@@ -11,6 +11,7 @@
 #define __shared__ static
 #define __launch_bounds__(threads)
 #define __syncwarp() warp.arrive_and_wait()
+#define __syncthreads() warp.arrive_and_wait()
 #define __device__
 #define __global__
 #define __forceinline__ inline

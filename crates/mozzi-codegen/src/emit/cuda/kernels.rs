@@ -4,10 +4,12 @@
 //! 32 states to shared memory as they lie, and its threads read their own row there: rows of an even length get a
 //! number of padding, so that the threads' rows begin in different banks. Outputs return the same way; of those that
 //! do not fit, only different entries are there, and the copy spreads them.
+//!
+//! By columns the threads of a block go through a long program together: see [`has_phases`].
 
 use super::super::body;
 use super::super::dialect::{Argument, Emitted, Source};
-use super::staging::{Block, Staging, plan};
+use super::staging::{Block, Staging, has_phases, plan};
 use super::{Cuda, NONE};
 
 /// Order of the numbers of many states.
@@ -31,6 +33,9 @@ impl CudaLayout {
 
 /// A thread's state.
 const STATE: &str = "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;";
+
+/// Lines of a phase.
+const PHASE: usize = 1000;
 
 /// How results are stored. By columns the address is computed for this one store: compilers would otherwise share
 /// offsets between arrays and keep hundreds of them in registers.
@@ -111,11 +116,17 @@ pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     lines.extend(function.lines().iter().map(|line| format!("// {line}")));
     lines.push("// Of one state: entry k of an array is at k * stride; columns have a stride below 2^32.".to_string());
     lines.extend(cuda.slots.borrow().keys().map(|output| format!("// Rows of {output} are in slots.")));
+    let phases = if has_phases(function.program) { ", bool phases = false" } else { "" };
     lines.push(format!(
-        "template <bool columns>\nstatic __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
+        "template <bool columns{phases}>\nstatic __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
     ));
     lines.extend(function.unused().map(|input| format!("    (void) {};", input.name)));
-    lines.extend(body::lines(function, cuda).iter().map(|line| format!("    {line}")));
+    for (k, line) in body::lines(function, cuda).iter().enumerate() {
+        if k % PHASE == PHASE - 1 && !phases.is_empty() {
+            lines.push("    if (phases) __syncthreads();".to_string());
+        }
+        lines.push(format!("    {line}"));
+    }
     lines.push("}".to_string());
     let head = |layout: CudaLayout, threads: usize| {
         format!(
@@ -143,8 +154,21 @@ fn columns(
         "// Of `count` states, a thread each: entry k of state i at k * count + i; blocks of at most {threads} threads."
     ));
     lines.push(head(CudaLayout::Columns, threads));
-    lines.push(STATE.to_string());
-    lines.push(format!("    if (i < count) {name}<true>({arrays}count);\n}}\n#endif"));
+    match has_phases(function.program) {
+        true => {
+            lines.push("    if (count == 0) return;".to_string());
+            lines.push(
+                "    // all threads of a block pass all phases: those beyond the last state compute it, too".into(),
+            );
+            lines.push(STATE.replace("long i =", "long own_ ="));
+            lines.push("    const unsigned long long i = own_ < count ? own_ : count - 1;".to_string());
+            lines.push(format!("    {name}<true, true>({arrays}count);\n}}\n#endif"));
+        }
+        false => {
+            lines.push(STATE.to_string());
+            lines.push(format!("    if (i < count) {name}<true>({arrays}count);\n}}\n#endif"));
+        }
+    }
 }
 
 fn rows(

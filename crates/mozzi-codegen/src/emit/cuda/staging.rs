@@ -24,6 +24,15 @@ impl Block {
     }
 }
 
+/// Operations beyond which a program is cut into phases by columns: its code, 16 bytes an instruction, no longer fits
+/// into the instruction cache of a multiprocessor, and warps at different places would load it over and over.
+const LONG: usize = 5000;
+
+/// Whether the threads of a block go through the program together, phase by phase.
+pub(super) fn has_phases(program: &Program) -> bool {
+    program.steps.iter().filter(|step| matches!(step, Step::Apply(..))).count() > LONG
+}
+
 /// How the rows of an array pass between global memory and a thread.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Staging {
@@ -92,7 +101,9 @@ pub(super) fn plan(program: &Program, layout: CudaLayout, precision: Precision) 
     let block = |staging: &[Staging]| {
         let row = staging.iter().zip(&lengths).map(|(staging, &n)| staging.width(n)).sum::<usize>();
         let of_thread = row * if precision.is_f64() { 8 } else { 4 };
-        let threads = [128, 64, 32].into_iter().find(|threads| threads * of_thread <= SHARED_BYTES);
+        // one block occupies a multiprocessor with 255 registers a thread: its warps are all that share the cache
+        let most = if layout == CudaLayout::Columns && has_phases(program) { 256 } else { 128 };
+        let threads = [most, 64, 32].into_iter().find(|threads| threads * of_thread <= SHARED_BYTES);
         threads.map(|threads| Block { threads, shared_bytes: threads * of_thread })
     };
     if block(&staging).is_none() {
