@@ -81,6 +81,9 @@ pub fn run(arguments: &IkArguments) -> Result<String> {
     let mut solver = InverseKinematics::with_options(&model, model.end_effector()?, arguments.options()?)?;
     match &arguments.input {
         Some(file) => arguments.table(&model, &mut solver, file, &guess, &secondary),
+        None if arguments.output.is_some() => {
+            Err(Failure::wrong("--out is for a table of poses, expected --in with a file of them"))
+        }
         None => {
             let found = solver.solve_with(
                 arguments.goal.read()?.ok_or_else(|| Failure::wrong(NO_GOAL))?,

@@ -70,9 +70,7 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
         let (model, table, robot) = (&model, &arguments.table, &arguments.robot);
         return Job { file, query, model, environment, table, robot }.run();
     }
-    if arguments.table.gpu {
-        return Err(Failure::wrong("--gpu is for many states, expected --in with a file of states"));
-    }
+    arguments.table.check_for_one_state()?;
     let inputs = arguments.inputs.read(query.declaration(), &model)?;
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
     if query.declaration().is_constrained {

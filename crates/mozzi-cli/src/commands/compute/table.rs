@@ -31,9 +31,9 @@ pub struct TableArguments {
     /// File for the results, with the same endings [default: CSV on standard output, "-"]
     #[arg(long = "out", value_name = "RESULT", requires = "input")]
     output: Option<String>,
-    /// Precision of the computation and of the results
-    #[arg(long, default_value = "f64", value_parser = ["f64", "f32"], requires = "input")]
-    precision: String,
+    /// Precision of the computation and of the results [default: f64]
+    #[arg(long, value_parser = ["f64", "f32"], requires = "input")]
+    precision: Option<String>,
     /// Largest number of threads [default: one per core]
     #[arg(long, value_name = "K", requires = "input")]
     threads: Option<usize>,
@@ -42,7 +42,27 @@ pub struct TableArguments {
     instruction_set: Option<InstructionSet>,
     /// Compute on the first NVIDIA GPU, by NVRTC (docs/gpu-guide.md)
     #[arg(long, conflicts_with_all = ["threads", "instruction_set"])]
-    pub gpu: bool,
+    gpu: bool,
+}
+
+impl TableArguments {
+    /// Checks that no flag is given that is for a file of states: clap does not require `--in` beside a flag that
+    /// excludes it.
+    pub fn check_for_one_state(&self) -> Result<()> {
+        let given = [
+            ("--out", self.output.is_some()),
+            ("--precision", self.precision.is_some()),
+            ("--threads", self.threads.is_some()),
+            ("--instruction-set", self.instruction_set.is_some()),
+            ("--gpu", self.gpu),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((flag, _)) => {
+                Err(Failure::wrong(format!("{flag} is for many states, expected --in with a file of states")))
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 fn instruction_set(name: &str) -> Result<InstructionSet, String> {
@@ -63,7 +83,7 @@ pub struct Job<'a> {
 impl Job<'_> {
     /// Without `--out`, JSON contains the results; with it, a summary and the file's name.
     pub fn run(&self) -> Result<String> {
-        if self.table.precision == "f32" { self.run_in::<f32>() } else { self.run_in::<f64>() }
+        if self.table.precision.as_deref() == Some("f32") { self.run_in::<f32>() } else { self.run_in::<f64>() }
     }
 
     fn run_in<T: Precision>(&self) -> Result<String> {
