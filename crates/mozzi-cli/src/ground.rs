@@ -1,6 +1,6 @@
 //! `--ground`, `--contact` and `--contacts FILE.json`: points of the robot and planes that stop them.
 
-use crate::failure::{self, Failure, Result};
+use crate::failure::{self, Result};
 use crate::json_file;
 use crate::numbers::number;
 use crate::robot::RobotArguments;
@@ -40,15 +40,7 @@ impl GroundArguments {
     pub fn contacts(&self, robot: &RobotArguments, model: &Model) -> Result<Contacts<'static>> {
         let coefficients = self.coefficients()?;
         if !self.ground && self.contacts.is_none() {
-            let unused = [
-                ("--contact", !self.contact.is_empty()),
-                ("--contact-friction", self.contact_friction.is_some()),
-                ("--restitution", self.restitution.is_some()),
-            ];
-            return match unused.iter().find(|(_, is_given)| *is_given) {
-                Some((flag, _)) => Err(Failure::wrong(format!("{flag} needs --ground or --contacts"))),
-                None => Ok(Contacts::default()),
-            };
+            return Ok(Contacts::default());
         }
         let mut found = Contacts::default();
         if let Some(file) = &self.contacts {

@@ -6,6 +6,7 @@ mod commands;
 mod conditions;
 mod controller;
 mod csv;
+mod effect;
 mod exit;
 mod failure;
 mod goals;
@@ -39,7 +40,7 @@ mod version;
 mod workload;
 mod xacro_arguments;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use commands::{assemble, check, compute, convert, explain, info, screws, simulate, terms, tour};
 use failure::{Failure, Result};
 use mozzi_text as text;
@@ -238,9 +239,17 @@ Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 
   .arrow .csv      one column per entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
 NaN in a state gives NaN in the results of that state only.";
 
+/// The arguments; flags that have no effect are an error.
+fn parsed() -> Result<Arguments, clap::Error> {
+    let mut program = Arguments::command();
+    let matches = program.try_get_matches_from_mut(std::env::args_os())?;
+    effect::check(&mut program, &matches)?;
+    Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut program))
+}
+
 /// The program.
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match parsed() {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() && std::env::args_os().any(|word| is_odd(&word.to_string_lossy())) => {
             failure::write(&error.render().to_string()); // without colours

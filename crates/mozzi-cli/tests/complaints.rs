@@ -238,6 +238,29 @@ fn wrong_tables() {
 }
 
 #[test]
+fn flags_without_effect_are_wrong_usage() {
+    let state = ["--theta", "0,0,0,0,0,0"];
+    let way = ["--from", "0,0,0,0,0,0", "--to", "1,0,0,0,0,0"];
+    for (command, others, flag, expected) in [
+        ("compute", &["mass-matrix", "--theta", "0,0,0,0,0,0"][..], &["--out", "x.csv"][..], "--in"),
+        ("compute", &["mass-matrix", "--theta", "0,0,0,0,0,0"], &["--precision", "f32"], "--in"),
+        ("compute", &["mass-matrix", "--theta", "0,0,0,0,0,0"], &["--threads", "2"], "--in"),
+        ("ik", &["--position", "0.3,0,0.3"], &["--out", "x.csv"], "--in"),
+        ("identify", &["log.csv"], &["--payload", "tool0"], "--only payload"),
+        ("trajectory", &way, &["--position", "0.3,0,0.3"], "--path screw or --path line"),
+        ("trajectory", &way, &["--ramp-fraction", "0.1", "--profile", "cubic"], "--profile trapezoidal"),
+        ("simulate", &state, &["--restitution", "0.5"], "--ground or --contacts"),
+        ("simulate", &state, &["--tolerance", "1e-6", "--method", "rk4"], "--method dopri"),
+        ("simulate", &state, &["--extrapolate", "hold"], "--torque or --follow or --tip-wrench"),
+        ("simulate", &state, &["--page-rows", "9"], "--report"),
+    ] {
+        let (code, message) = complaint(&[&[command, "ur5"], others, flag].concat());
+        let expected = format!("error: {} has no effect without {expected}\n", flag[0]);
+        assert!(code == 2 && message.starts_with(&expected) && message.contains("Usage: mozzi"), "{message}");
+    }
+}
+
+#[test]
 fn wrong_usage_is_told_apart() {
     for arguments in [
         &["inform", "ur5"][..],

@@ -33,7 +33,7 @@ fn wrong_usage_is_told() {
         complaint(&[&known[..], more].concat())
     };
     let (code, message) = arguments(&["--theta", "0,0,0,0,0,0"]);
-    assert!(code == 1 && message.contains("--gpu is for many states, expected --in"), "{message}");
+    assert!(code == 2 && message.contains("--gpu has no effect without --in"), "{message}");
     let with_threads = ["compute", "ur5", "mass-matrix", "--gpu", "--in", &states, "--threads", "2"];
     let (code, message) = complaint(&with_threads);
     assert!(code == 2 && message.contains("--threads"), "{message}");

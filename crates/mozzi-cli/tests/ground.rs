@@ -54,7 +54,7 @@ fn a_cube_falls_on_the_ground() {
 fn what_is_wrong_with_contacts_is_said() {
     let cube = file(&folder("ground_wrong"), "cube.urdf", CUBE);
     for (flags, expected) in [
-        (&["--contact", "cube"][..], "--contact needs --ground or --contacts"),
+        (&["--contact", "cube"][..], "--contact has no effect without --ground or --contacts"),
         (&["--ground", "--contact", "foot"], "foot"),
         (&["--ground", "--theta", "1,0,0,0,0,0,0"], "within its plane"),
         (&["--ground", "--restitution", "2"], "coefficient of restitution"),

@@ -32,7 +32,7 @@ pub struct IkArguments {
     #[arg(long = "in", value_name = "FILE.csv", conflicts_with_all = ["position", "rpy", "quaternion"])]
     input: Option<String>,
     /// File for the table theta_1 …, reached, angle, distance, starts, iterations [default: standard output]
-    #[arg(long = "out", value_name = "FILE.csv", requires = "input")]
+    #[arg(long = "out", value_name = "FILE.csv")]
     output: Option<String>,
     /// Initial guess, or the name of a state [default: the robot's start, else joints at 0]; for a table, the guess
     /// of each row
@@ -81,9 +81,6 @@ pub fn run(arguments: &IkArguments) -> Result<String> {
     let mut solver = InverseKinematics::with_options(&model, model.end_effector()?, arguments.options()?)?;
     match &arguments.input {
         Some(file) => arguments.table(&model, &mut solver, file, &guess, &secondary),
-        None if arguments.output.is_some() => {
-            Err(Failure::wrong("--out is for a table of poses, expected --in with a file of them"))
-        }
         None => {
             let found = solver.solve_with(
                 arguments.goal.read()?.ok_or_else(|| Failure::wrong(NO_GOAL))?,

@@ -51,16 +51,6 @@ fn flags_without_an_effect_are_refused() {
 }
 
 #[test]
-fn flags_of_many_states_need_their_file() {
-    for (flag, value) in
-        [("--out", "x.csv"), ("--precision", "f32"), ("--threads", "2"), ("--instruction-set", "portable")]
-    {
-        let expected = format!("{flag} is for many states, expected --in with a file of states");
-        wrong(&["ur5", "mass-matrix", "--theta", "0,0,0,0,0,0", flag, value], &expected);
-    }
-}
-
-#[test]
 fn a_frame_of_a_table_needs_its_wrench() {
     let folder = folder("compute_frame");
     let theta = npz(&folder, "theta.npz", &[("theta", &[1, 6], &[0.0; 6])]);

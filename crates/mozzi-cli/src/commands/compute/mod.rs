@@ -70,7 +70,6 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
         let (model, table, robot) = (&model, &arguments.table, &arguments.robot);
         return Job { file, query, model, environment, table, robot }.run();
     }
-    arguments.table.check_for_one_state()?;
     let inputs = arguments.inputs.read(query.declaration(), &model)?;
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
     if query.declaration().is_constrained {

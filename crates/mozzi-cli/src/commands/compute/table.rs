@@ -29,40 +29,20 @@ pub struct TableArguments {
     #[arg(long = "in", value_name = "STATES")]
     pub input: Option<String>,
     /// File for the results, with the same endings [default: CSV on standard output, "-"]
-    #[arg(long = "out", value_name = "RESULT", requires = "input")]
+    #[arg(long = "out", value_name = "RESULT")]
     output: Option<String>,
     /// Precision of the computation and of the results [default: f64]
-    #[arg(long, value_parser = ["f64", "f32"], requires = "input")]
+    #[arg(long, value_parser = ["f64", "f32"])]
     precision: Option<String>,
     /// Largest number of threads [default: one per core]
-    #[arg(long, value_name = "K", requires = "input")]
+    #[arg(long, value_name = "K")]
     threads: Option<usize>,
     /// Instruction set: portable, neon, avx2 or avx512 [default: the widest that the machine has]
-    #[arg(long, value_name = "NAME", value_parser = instruction_set, requires = "input")]
+    #[arg(long, value_name = "NAME", value_parser = instruction_set)]
     instruction_set: Option<InstructionSet>,
     /// Compute on the first NVIDIA GPU, by NVRTC (docs/gpu-guide.md)
     #[arg(long, conflicts_with_all = ["threads", "instruction_set"])]
-    gpu: bool,
-}
-
-impl TableArguments {
-    /// Checks that no flag is given that is for a file of states: clap does not require `--in` beside a flag that
-    /// excludes it.
-    pub fn check_for_one_state(&self) -> Result<()> {
-        let given = [
-            ("--out", self.output.is_some()),
-            ("--precision", self.precision.is_some()),
-            ("--threads", self.threads.is_some()),
-            ("--instruction-set", self.instruction_set.is_some()),
-            ("--gpu", self.gpu),
-        ];
-        match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((flag, _)) => {
-                Err(Failure::wrong(format!("{flag} is for many states, expected --in with a file of states")))
-            }
-            None => Ok(()),
-        }
-    }
+    pub gpu: bool,
 }
 
 fn instruction_set(name: &str) -> Result<InstructionSet, String> {
