@@ -48,11 +48,15 @@ impl<'a, 'py> Torque<'a, 'py> {
 }
 
 /// A method of simulations; those of rollouts are the others than 'auto' and 'moreau'.
-fn simulation_method(name: &str, tolerance: f64) -> PyResult<Method> {
+fn simulation_method(name: &str, tolerance: Option<f64>) -> PyResult<Method> {
+    if let Some(tolerance) = tolerance.filter(|_| name != "dopri") {
+        let message = format!("tolerance is {tolerance} and method '{name}', expected 'dopri' or no tolerance");
+        return Err(PyValueError::new_err(message));
+    }
     match name {
         "auto" => Ok(Method::Automatic),
         "moreau" => Ok(Method::MoreauJean),
-        other => method(other, tolerance).map_err(|_| {
+        other => method(other, tolerance.unwrap_or(1e-9)).map_err(|_| {
             let expected = "'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
             PyValueError::new_err(format!("method is '{name}', expected {expected}"))
         }),
@@ -106,8 +110,9 @@ impl PyModel {
     ///     How a step is taken. 'auto' is 'moreau' if there is dry friction or a contact, else 'rk4'. 'moreau' is
     ///     Moreau and Jean's step for one-sided forces. 'dopri', of order 5, finds its steps by a tolerance;
     ///     'midpoint' is implicit and symplectic: the energy's error stays bounded.
-    /// tolerance : float
-    ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇.
+    /// tolerance : float or None
+    ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇; 1e-9 if
+    ///     none is given.
     /// record_every : int
     ///     Record the start, every k-th step and the last.
     /// until : str, callable, or a list of them, optional
@@ -163,7 +168,7 @@ impl PyModel {
     /// >>> falls = pendulum.simulate(starts, [0.0, 0.0], 1.0, 100, record_every=10)
     /// >>> falls.t.shape, falls.theta.shape
     /// ((11,), (50, 11, 2))
-    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="auto", tolerance=1e-9, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, contacts=None, planes=None, sticking=true, threads=None))]
+    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="auto", tolerance=None, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, contacts=None, planes=None, sticking=true, threads=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn simulate<'py>(
         slf: &Bound<'py, Self>,
@@ -173,7 +178,7 @@ impl PyModel {
         steps: usize,
         torque: Given<'_, 'py>,
         method: &str,
-        tolerance: f64,
+        tolerance: Option<f64>,
         record_every: usize,
         until: Given<'_, 'py>,
         events: Given<'_, 'py>,
