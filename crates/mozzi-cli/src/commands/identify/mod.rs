@@ -44,7 +44,8 @@ pub struct IdentifyArguments {
     /// Estimate these parameters alone
     #[arg(long)]
     only: Option<Only>,
-    /// The frame that carries the payload of --only payload [default: the end effector]
+    /// The frame that carries the payload of --only payload (links and a payload cannot be told apart by one log)
+    /// [default: the end effector]
     #[arg(long, value_name = "FRAME")]
     payload: Option<String>,
     /// Where forces are measured; current: estimate drive gains, which needs --known-payload
@@ -181,10 +182,6 @@ impl IdentifyArguments {
         let mut choice = match self.only {
             Some(Only::Friction) => Choice::only_friction(),
             Some(Only::Payload) => Choice::only_payload(frame()?),
-            None if self.payload.is_some() => {
-                let help = "expected --only payload: links and a payload cannot be told apart by one log";
-                return Err(Failure::wrong(format!("--payload without --only, {help}")));
-            }
             None => Choice::all(sensor),
         };
         choice.gains = self.torque == Torque::Current;
