@@ -36,6 +36,7 @@ mod cache;
 mod driver;
 mod error;
 mod guarded;
+mod manifold;
 mod number;
 mod nvrtc;
 mod order;

@@ -78,22 +78,26 @@ class Rollout:
 
     def launch(self, state, tau, feedback, tables, step, steps, every, robots, stream):
         Kernel.launched.append(("rollout", robots, stream))
-        model, n = self.kernel.model, self.kernel.model.n
-        theta, dtheta = (self.kernel.at(x, robots, n).copy() for x in state)
+        model, n, nq = self.kernel.model, self.kernel.model.n, self.kernel.model.nq
+        theta, dtheta = (self.kernel.at(x, robots, length).copy() for x, length in zip(state, (nq, n)))
         torques = None if tau is None else self.kernel.at(tau, robots, steps * n)
         if feedback is not None:
             gains = Kernel.at(self.kernel, feedback[0], 1, 2 * n * n).reshape(n, 2 * n)
-            target = self.kernel.at(feedback[1], robots, 2 * n)
+            target = self.kernel.at(feedback[1], robots, nq + n)
         for k in range(steps):
             held = np.zeros((robots, n)) if tau is None else torques[:, k * n : (k + 1) * n].copy()
             if feedback is not None:
-                held += (target - np.hstack([theta, dtheta])) @ gains.T
+                held += np.hstack([differences(model, theta, target[:, :nq]), target[:, nq:] - dtheta]) @ gains.T
             found = model.rollout(theta, dtheta, held[:, None, :], step)
             theta, dtheta = found.theta[:, 1], found.dtheta[:, 1]
             if (k + 1) % every == 0:
-                row = slice((k + 1) // every * n - n, (k + 1) // every * n)
-                for address, x in zip(tables, (theta, dtheta)):
-                    self.kernel.at(address, robots, steps // every * n)[:, row] = x
+                for address, x, length in zip(tables, (theta, dtheta), (nq, n)):
+                    row = slice((k + 1) // every * length - length, (k + 1) // every * length)
+                    self.kernel.at(address, robots, steps // every * length)[:, row] = x
+
+
+def differences(model, start, end):
+    return np.array([model.difference(*pair) for pair in zip(start, end)])
 
 
 @pytest.fixture
@@ -209,6 +213,28 @@ def test_rollouts_with_feedback(ur5, fake):
     ]:
         with pytest.raises(error, match=words):
             gpu.rollout(*x, step=0.01, out=list(map(OnGpu, out)), **arguments)
+
+
+@pytest.mark.parametrize("layout", ["rows", "columns"])
+def test_rollouts_of_a_floating_base(fake, layout):
+    anymal = mozzi.models.anymal(floating=True)
+    n, nq = anymal.n, anymal.nq
+    random = np.random.default_rng(4)
+    still = [1.0] + [0.0] * (nq - 1)
+    theta, desired = ([anymal.integrate(still, x) for x in some] for some in random.uniform(-1, 1, (2, 5, n)))
+    theta, desired = np.array(theta), np.array(desired)
+    dtheta, target = random.uniform(-1, 1, (5, n)), np.hstack([desired, np.zeros((5, n))])
+    gains = np.zeros((n, 2 * n))
+    gains[6:, 6:n] = 50.0 * np.eye(n - 6)  # the joints alone
+    held = np.hstack([differences(anymal, theta, desired), -dtheta]) @ gains.T
+    gpu = _gpu.Gpu(anymal, layout)
+    x, out = [OnGpu(on_gpu(gpu, a)) for a in (theta, dtheta)], [on_gpu(gpu, np.empty((5, 1, k))) for k in (nq, n)]
+    feedback = {"gains": OnGpu(gains), "target": OnGpu(on_gpu(gpu, target))}
+    gpu.rollout(*x, step=0.01, steps=1, out=list(map(OnGpu, out)), **feedback)
+    for array, table in zip(out, anymal.rollout(theta, dtheta, held[:, None], 0.01)):
+        np.testing.assert_allclose(array, on_gpu(gpu, table[:, 1:]), atol=1e-13)
+    with pytest.raises(ValueError, match=r"theta has shape \(5, 18\), expected \(\.\.\., 19\)"):
+        _gpu.Gpu(anymal).rollout(OnGpu(dtheta), OnGpu(dtheta), step=0.01, steps=1)
 
 
 def test_gradients_of_torch(ur5, fake, monkeypatch):

@@ -16,16 +16,18 @@ pub struct Seconds {
 
 const ROBOTS: usize = 1_000_000;
 const STEPS: usize = 1000;
+/// Joints of the largest robot: a humanoid's would take most of a minute.
+const LARGEST: usize = 18;
 
-/// Of the robots with a fixed base, in `f32`, structure of arrays, without torques, final states only.
+/// Of the robots without Talos, in `f32`, structure of arrays, without torques, final states only.
 pub fn seconds(device: &Device, robots: &[Robot]) -> Result<Vec<Seconds>, Box<dyn Error>> {
     let mut all = Vec::new();
-    for Robot { name, model } in robots.iter().filter(|robot| !robot.model.is_floating()) {
+    for Robot { name, model } in robots.iter().filter(|robot| robot.model.n() <= LARGEST) {
         let rollout = Rollout::new(device, &Source::rollout(model, Precision::F32, CudaLayout::Columns)?)?;
-        let length = ROBOTS * model.n();
-        let start: Vec<f32> = (0..length).map(|k| (k as f32).sin()).collect();
+        let [theta_length, length] = [model.nq(), model.n()].map(|length| ROBOTS * length);
+        let start: Vec<f32> = (0..theta_length).map(|k| (k as f32).sin()).collect(); // quaternions of any length
         let (theta, dtheta) = (device.copy(&start)?, device.zeros::<f32>(length)?);
-        let (theta_table, dtheta_table) = (device.zeros::<f32>(length)?, device.zeros::<f32>(length)?);
+        let (theta_table, dtheta_table) = (device.zeros::<f32>(theta_length)?, device.zeros::<f32>(length)?);
         let arrays = RolloutArrays {
             theta: theta.pointer(),
             dtheta: dtheta.pointer(),

@@ -26,17 +26,17 @@ pub struct Steps {
 /// [`Columns`](mozzi_codegen::CudaLayout::Columns).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RolloutArrays {
-    /// θ\[0\], n numbers a robot.
+    /// θ\[0\], nq numbers a robot.
     pub theta: u64,
     /// θ̇\[0\], n numbers a robot.
     pub dtheta: u64,
     /// Torques, K n numbers a robot, those of a step side by side; `None` for zeros.
     pub tau: Option<u64>,
-    /// Feedback: the gains G, n × 2n by rows, for all robots; and the desired states, 2n numbers a robot.
+    /// Feedback: the gains G, n × 2n by rows, for all robots; and the desired states, nq + n numbers a robot.
     pub feedback: Option<[u64; 2]>,
-    /// θ after each `every` steps, K/every · n numbers a robot.
+    /// θ after each `every` steps, K/every · nq numbers a robot.
     pub theta_table: u64,
-    /// θ̇ likewise.
+    /// θ̇ likewise, K/every · n numbers.
     pub dtheta_table: u64,
 }
 
@@ -122,7 +122,7 @@ impl Rollout {
         steps.check()?;
         let source = self.kernel.source();
         let robots = source.states::<T>(&[inputs.theta.len(), inputs.dtheta.len()])?;
-        let n = source.inputs()[0].length;
+        let [nq, n] = [0, 1].map(|k| source.inputs()[k].length);
         let check = |what: &str, found: usize, states: usize, width: usize| match found == states * width {
             true => Ok(()),
             false => Err(Error::WrongLength { what: what.into(), found, expected: states * width, states, width }),
@@ -130,7 +130,7 @@ impl Rollout {
         inputs.tau.map_or(Ok(()), |tau| check("tau", tau.len(), robots, steps.steps * n))?;
         if let Some([gains, target]) = inputs.feedback {
             check("gains", gains.len(), n, 2 * n)?;
-            check("target", target.len(), robots, 2 * n)?;
+            check("target", target.len(), robots, nq + n)?;
         }
         let device = self.kernel.device();
         let [theta, dtheta] = [device.copy(inputs.theta)?, device.copy(inputs.dtheta)?];
@@ -139,8 +139,8 @@ impl Rollout {
             Some([gains, target]) => Some([device.copy(gains)?, device.copy(target)?]),
             None => None,
         };
-        let length = robots * n * (steps.steps / steps.every);
-        let tables = [device.zeros::<T>(length)?, device.zeros::<T>(length)?];
+        let rows = robots * (steps.steps / steps.every);
+        let tables = [device.zeros::<T>(rows * nq)?, device.zeros::<T>(rows * n)?];
         let arrays = RolloutArrays {
             theta: theta.pointer(),
             dtheta: dtheta.pointer(),

@@ -85,12 +85,13 @@ class Gpu:
     ) -> tuple[Any, Any]:
         """The states of many robots after each ``every`` Runge-Kutta steps, in one kernel: a thread for each robot.
 
-        Torques are held over each step: those of ``tau``, plus G(x_d − x) with ``gains`` G and ``target`` x_d, of the
-        state x = (θ, θ̇) at the beginning of the step. Joint limits have no effect.
+        Torques are held over each step: those of ``tau``, plus G(θ_d ⊖ θ, θ̇_d − θ̇) with ``gains`` G and ``target``
+        (θ_d, θ̇_d), of the state at the beginning of the step. Quaternions move on their group, as in `Model.rollout`;
+        θ_d ⊖ θ is `Model.difference`. Joint limits have no effect.
 
         Parameters
         ----------
-        theta, dtheta : arrays, shape (..., n), by columns (n, N)
+        theta, dtheta : arrays, shapes (..., nq) and (..., n), by columns (nq, N) and (n, N)
             The start.
         tau : array, shape (..., K, n), by columns (K, n, N), optional
             The torques of K steps. Default: zeros.
@@ -100,7 +101,7 @@ class Gpu:
             K, if ``tau`` is not given.
         every : int
             A divisor of K.
-        gains, target : arrays, shapes (n, 2n) and (..., 2n), by columns (2n, N), optional
+        gains, target : arrays, shapes (n, 2n) and (..., nq + n), by columns (nq + n, N), optional
             Feedback, the same gains for all robots.
         out : two arrays, optional
             The results.
@@ -109,32 +110,33 @@ class Gpu:
 
         Returns
         -------
-        theta, dtheta : arrays, shape (..., K/every, n), by columns (K/every, n, N)
+        theta, dtheta : arrays, shapes (..., K/every, nq) and (..., K/every, n), by columns (K/every, nq, N) and
+            (K/every, n, N)
 
         Raises
         ------
         ValueError
-            The robot has a floating base, a ball, a free joint or constraints; or shapes do not go together.
+            The robot has constraints, or shapes do not go together.
         """
         if (gains is None) != (target is None):
             raise TypeError("gains and target belong together: one is missing")
         if _wants_gradient((theta, dtheta, tau, gains, target)):
             raise TypeError("a rollout in one kernel has no gradient: see mozzi.torch.Model.rollout, or detach")
-        n = self.model.n
+        n, nq = self.model.n, self.model.nq
         views = [view(theta, "theta"), view(dtheta, "dtheta")]
-        dtype, leading = views[0].dtype, self._leading(views[0].shape, "theta", n)
+        dtype, leading = views[0].dtype, self._leading(views[0].shape, "theta", nq)
         self._check(views[1], "dtheta", self._shape(leading, (n,)), dtype)
         torques, steps = self._torques(tau, steps, leading, dtype)
         feedback = None
         if gains is not None:
             pair = [view(gains, "gains"), view(target, "target")]
             self._check(pair[0], "gains", (n, 2 * n), dtype)
-            self._check(pair[1], "target", self._shape(leading, (2 * n,)), dtype)
+            self._check(pair[1], "target", self._shape(leading, (nq + n,)), dtype)
             feedback = [x.address for x in pair]
         if steps < 1 or every < 1 or steps % every:
             raise ValueError(f"every is {every}, expected a divisor of the number of steps, {steps}")
-        shape = self._shape(leading, (steps // every, n))
-        results, tables = self._results(theta, out, ["theta", "dtheta"], [shape, shape], dtype)
+        shapes = [self._shape(leading, (steps // every, length)) for length in (nq, n)]
+        results, tables = self._results(theta, out, ["theta", "dtheta"], shapes, dtype)
         if ("rollout", dtype) not in self._kernels:
             made = _mozzi.GpuRollout(self.model, dtype, self.layout, self.device, packages())
             self._kernels["rollout", dtype] = made
