@@ -13,9 +13,6 @@ use sass::Instructions;
 use std::error::Error;
 use std::process::ExitCode;
 
-/// Lines of text of the longest kernel that is compiled: longer ones take minutes.
-const LONGEST: usize = 20_000;
-
 /// A kernel's counts.
 struct Count {
     robot: String,
@@ -39,10 +36,6 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut counts = Vec::new();
     for (robot, query, form) in arguments.kernels(&robots) {
         let source = Source::new(&robot.model, query, form)?;
-        if source.text().lines().count() > LONGEST {
-            eprintln!("{} {} {form:?}: left out, longer than {LONGEST} lines", robot.name, query.name());
-            continue;
-        }
         let counted = count(robot, query.name(), &source, &nvrtc, arch, nvdisasm)?;
         eprintln!("{} {} {form:?}: {:?}", counted.robot, counted.quantity, counted.resources);
         counts.push(counted);
