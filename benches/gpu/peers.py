@@ -12,8 +12,8 @@ import argparse
 import importlib.metadata
 import importlib.util
 import os
+import sys
 import tempfile
-import time
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -25,10 +25,13 @@ import mozzi
 import mozzi.jax
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from race import race
+
 MODELS = Path(__file__).parents[2] / "crates/mozzi-urdf/models"
 CHECKED = 100
-QUANTITIES = ("inverse_dynamics", "forward_dynamics", "mass_matrix", "inverse_dynamics_vjp")
-INPUTS = {"mass_matrix": 1, "inverse_dynamics_vjp": 4}
+# the quantities, and how many arrays each takes of θ, θ̇, θ̈ or τ, x
+INPUTS = {"inverse_dynamics": 3, "forward_dynamics": 3, "mass_matrix": 1, "inverse_dynamics_vjp": 4}
 
 
 def robots():
@@ -42,15 +45,16 @@ def robots():
 
 
 def of_mozzi(model, _urdf, arrays):
-    def vjp(theta, dtheta, ddtheta, bar):
-        return jax.vjp(lambda *x: mozzi.jax.inverse_dynamics(model, *x), theta, dtheta, ddtheta)[1](bar)
+    def tau(*x):
+        return mozzi.jax.inverse_dynamics(model, *x)
 
-    return {
-        "inverse_dynamics": jitted(lambda *x: mozzi.jax.inverse_dynamics(model, *x), arrays[:3]),
-        "forward_dynamics": jitted(lambda *x: mozzi.jax.forward_dynamics(model, *x), arrays[:3]),
-        "mass_matrix": jitted(lambda theta: mozzi.jax.mass_matrix(model, theta), arrays[:1]),
-        "inverse_dynamics_vjp": jitted(vjp, arrays),
+    functions = {
+        "inverse_dynamics": tau,
+        "forward_dynamics": lambda *x: mozzi.jax.forward_dynamics(model, *x),
+        "mass_matrix": lambda theta: mozzi.jax.mass_matrix(model, theta),
+        "inverse_dynamics_vjp": vjp(tau),
     }
+    return jitted(functions, arrays)
 
 
 def of_frax(_model, urdf, arrays):
@@ -63,17 +67,24 @@ def of_frax(_model, urdf, arrays):
         return robot.rnea(theta, dtheta, ddtheta, up, None)
 
     functions = {
-        "inverse_dynamics": (tau, 3),
-        "forward_dynamics": (lambda *x: robot.forward_dynamics(*x, None), 3),
-        "mass_matrix": (robot.crba, 1),
-        "inverse_dynamics_vjp": (lambda *x: jax.vjp(tau, *x[:3])[1](x[3]), 4),
+        "inverse_dynamics": tau,
+        "forward_dynamics": lambda *x: robot.forward_dynamics(*x, None),
+        "mass_matrix": robot.crba,
+        "inverse_dynamics_vjp": vjp(tau),
     }
-    return {name: jitted(jax.vmap(f), arrays[:count]) for name, (f, count) in functions.items()}
+    return jitted({name: jax.vmap(function) for name, function in functions.items()}, arrays)
 
 
-def jitted(function, arrays):
-    run = jax.jit(function)
-    return lambda: jax.block_until_ready(run(*arrays))
+def vjp(tau):
+    return lambda *x: jax.vjp(tau, *x[:3])[1](x[3])
+
+
+def jitted(functions, arrays):
+    def runner(name):
+        run, inputs = jax.jit(functions[name]), arrays[: INPUTS[name]]
+        return lambda: jax.block_until_ready(run(*inputs))
+
+    return {name: runner(name) for name in functions}
 
 
 def of_warp(_model, urdf, arrays):
@@ -156,8 +167,8 @@ class Dense:
         return np.stack(all_rows)
 
 
-PEERS = {"mozzi.jax": of_mozzi, "frax": of_frax, "MuJoCo Warp": of_warp}
-MODULES = {"mozzi.jax": "mozzi", "frax": "frax", "MuJoCo Warp": "mujoco_warp"}
+# the libraries: module, and its runners
+PEERS = {"mozzi.jax": ("mozzi", of_mozzi), "frax": ("frax", of_frax), "MuJoCo Warp": ("mujoco_warp", of_warp)}
 
 
 def expected(model, name, rows):
@@ -177,32 +188,14 @@ def error(found, reference):
     return (np.abs(found - reference).max(1) / size).max() / np.finfo(np.float32).eps
 
 
-def race(runners, rounds=7, seconds=0.05):
-    """The least seconds of one call of each; the runners take turns."""
-    least, calls = {}, {}
-    for name, run in runners.items():
-        run()
-        start = time.perf_counter()
-        run()
-        least[name] = time.perf_counter() - start
-        calls[name] = int(np.clip(seconds / least[name], 1, 1000))
-    for _ in range(rounds):
-        for name, run in runners.items():
-            start = time.perf_counter()
-            for _ in range(calls[name]):
-                run()
-            least[name] = min(least[name], (time.perf_counter() - start) / calls[name])
-    return least
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--states", default="4096,65536,1048576", help="states in an array, several by commas")
     counts = [int(count) for count in parser.parse_args().states.split(",")]
     if min(counts) < CHECKED:
         parser.error(f"--states: at least {CHECKED}, the number of states that are checked")
-    there = {name: make for name, make in PEERS.items() if importlib.util.find_spec(MODULES[name])}
-    versions = ", ".join(f"{name} {importlib.metadata.version(MODULES[name])}" for name in there)
+    there = {name: peer for name, peer in PEERS.items() if importlib.util.find_spec(peer[0])}
+    versions = ", ".join(f"{name} {importlib.metadata.version(module)}" for name, (module, _) in there.items())
     device = jax.devices()[0]
     print(f"\n## Beside other libraries\n\nWritten by benches/gpu/peers.py on {device.device_kind}, JAX {jax.__version__}: {versions}.")
     print("f32, arrays (N, n) of the device, 10⁹ states a second, the least time of all rounds, a call's launch and the wait for it")
@@ -216,12 +209,12 @@ def main():
             urdf.write_text(text)
             for count in counts:
                 arrays = [jnp.asarray(random.uniform(-1, 1, (count, model.n)), jnp.float32) for _ in range(4)]
-                made = {name: make(model, urdf, arrays) for name, make in there.items()}
-                for quantity in QUANTITIES:
+                made = {name: make(model, urdf, arrays) for name, (_, make) in there.items()}
+                for quantity, inputs in INPUTS.items():
                     runners = {name: runs[quantity] for name, runs in made.items() if quantity in runs}
-                    reference = expected(model, quantity, arrays[: INPUTS.get(quantity, 3)])
+                    reference = expected(model, quantity, arrays[:inputs])
                     errors = {name: error(run(), reference) for name, run in runners.items()}
-                    seconds = race(runners)
+                    seconds = dict(zip(runners, race(list(runners.values()), rounds=7, seconds=0.05)))
                     cells = [
                         f"{count / seconds[name] / 1e9:.4f} ({errors[name]:.1f})" if name in runners else ""
                         for name in there

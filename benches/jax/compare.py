@@ -8,6 +8,7 @@ of all rounds.
 """
 
 import platform
+import sys
 import time
 from pathlib import Path
 
@@ -17,28 +18,12 @@ import mozzi
 import mozzi.jax
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from race import race
+
 URDF = Path(__file__).parents[2] / "crates/mozzi-urdf/models/ur5.urdf"
 ur5 = mozzi.models.ur5()
 random = np.random.default_rng(1763)
-
-
-def race(runners, rounds=15, seconds=0.01):
-    """The least seconds of one call of each."""
-    calls = []
-    for run in runners:
-        jax.block_until_ready(run())
-        start = time.perf_counter()
-        jax.block_until_ready(run())
-        calls.append(max(1, int(seconds / (time.perf_counter() - start))))
-    least = [float("inf")] * len(runners)
-    for _ in range(rounds):
-        for k, (run, count) in enumerate(zip(runners, calls)):
-            start = time.perf_counter()
-            for _ in range(count):
-                found = run()
-            jax.block_until_ready(found)
-            least[k] = min(least[k], (time.perf_counter() - start) / count)
-    return least
 
 
 def states(count, dtype):

@@ -47,7 +47,7 @@ pub fn check(program: &mut Command, matches: &ArgMatches) -> Result<(), Error> {
     Ok(())
 }
 
-/// Whether a flag is in the command line, with this value if one is asked for.
+/// Whether the command line has this flag. With a value: whether it gives the flag this value.
 fn is_given(command: &Command, given: &ArgMatches, flag: &str, value: Option<&str>) -> bool {
     let Some(id) = argument(command, flag).map(|argument| argument.get_id().as_str()) else { return false };
     let has = |value: &str| given.get_raw(id).into_iter().flatten().any(|found| found == value);

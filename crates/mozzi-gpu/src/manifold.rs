@@ -42,8 +42,8 @@ fn rate(&Place { freedom, j, .. }: &Place) -> Option<String> {
 fn difference(&Place { freedom, q, j }: &Place) -> Option<String> {
     Some(match freedom {
         Freedom::One => format!("d[{j}] = to[{q}] - from[{q}];"),
-        Freedom::Ball => format!("ROBOT_way(from + {q}, to + {q}, d + {j});"),
-        Freedom::Free => format!("ROBOT_way_of_pose(from + {q}, to + {q}, d + {j});"),
+        Freedom::Ball => format!("ROBOT_log(from + {q}, to + {q}, d + {j});"),
+        Freedom::Free => format!("ROBOT_log_of_pose(from + {q}, to + {q}, d + {j});"),
     })
 }
 
@@ -65,7 +65,7 @@ static __device__ __forceinline__ void ROBOT_difference(const NUMBER *from, cons
 DIFFERENCE}
 "#;
 
-/// Quaternions (w, x, y, z) of any length. A small square is one below which the series' next term is rounding.
+/// Quaternions (w, x, y, z) of any length.
 const QUATERNIONS: &str = r#"
 // c = a x b.
 static __device__ __forceinline__ void ROBOT_cross(const NUMBER *a, const NUMBER *b, NUMBER *c)
@@ -119,7 +119,7 @@ static __device__ __forceinline__ void ROBOT_rate_of_logarithm(const NUMBER *k, 
 }
 
 // The logarithm of from^-1 to, by the shorter rotation.
-static __device__ __forceinline__ void ROBOT_way(const NUMBER *from, const NUMBER *to, NUMBER *d)
+static __device__ __forceinline__ void ROBOT_log(const NUMBER *from, const NUMBER *to, NUMBER *d)
 {
     NUMBER w = from[0] * to[0] + from[1] * to[1] + from[2] * to[2] + from[3] * to[3];
     NUMBER x[3];
@@ -133,7 +133,7 @@ static __device__ __forceinline__ void ROBOT_way(const NUMBER *from, const NUMBE
 }
 "#;
 
-/// Poses: a quaternion and the origin.
+/// Poses: a quaternion and the origin. Below a square of 10⁻⁶ the next term of the series is rounding.
 const POSES: &str = r#"
 // x + a w x x + b w x (w x x), which J(w) and its inverse are.
 static __device__ __forceinline__ void ROBOT_series(const NUMBER *w, const NUMBER a, const NUMBER b, NUMBER *x)
@@ -172,9 +172,9 @@ static __device__ __forceinline__ void ROBOT_move(NUMBER *T, const NUMBER *v, co
 }
 
 // The logarithm of from^-1 to.
-static __device__ __forceinline__ void ROBOT_way_of_pose(const NUMBER *from, const NUMBER *to, NUMBER *d)
+static __device__ __forceinline__ void ROBOT_log_of_pose(const NUMBER *from, const NUMBER *to, NUMBER *d)
 {
-    ROBOT_way(from, to, d);
+    ROBOT_log(from, to, d);
     NUMBER p[3];
 #pragma unroll
     for (int i = 0; i < 3; ++i) p[i] = to[i + 4] - from[i + 4];

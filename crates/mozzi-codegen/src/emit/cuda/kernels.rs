@@ -31,8 +31,10 @@ impl CudaLayout {
     }
 }
 
-/// A thread's state.
-const STATE: &str = "    const unsigned long long i = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;";
+/// A thread's state, by this name.
+fn state(name: &str) -> String {
+    format!("    const unsigned long long {name} = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;")
+}
 
 /// Lines of a phase.
 const PHASE: usize = 1000;
@@ -116,13 +118,14 @@ pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     lines.extend(function.lines().iter().map(|line| format!("// {line}")));
     lines.push("// Of one state: entry k of an array is at k * stride; columns have a stride below 2^32.".to_string());
     lines.extend(cuda.slots.borrow().keys().map(|output| format!("// Rows of {output} are in slots.")));
-    let phases = if has_phases(function.program) { ", bool phases = false" } else { "" };
+    let has_phases = has_phases(function.program);
+    let phases = if has_phases { ", bool phases = false" } else { "" };
     lines.push(format!(
         "template <bool columns{phases}>\nstatic __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
     ));
     lines.extend(function.unused().map(|input| format!("    (void) {};", input.name)));
     for (k, line) in body::lines(function, cuda).iter().enumerate() {
-        if k % PHASE == PHASE - 1 && !phases.is_empty() {
+        if has_phases && k % PHASE == PHASE - 1 {
             lines.push("    if (phases) __syncthreads();".to_string());
         }
         lines.push(format!("    {line}"));
@@ -154,21 +157,19 @@ fn columns(
         "// Of `count` states, a thread each: entry k of state i at k * count + i; blocks of at most {threads} threads."
     ));
     lines.push(head(CudaLayout::Columns, threads));
-    match has_phases(function.program) {
-        true => {
-            lines.push("    if (count == 0) return;".to_string());
-            lines.push(
-                "    // all threads of a block pass all phases: those beyond the last state compute it, too".into(),
-            );
-            lines.push(STATE.replace("long i =", "long own_ ="));
-            lines.push("    const unsigned long long i = own_ < count ? own_ : count - 1;".to_string());
-            lines.push(format!("    {name}<true, true>({arrays}count);\n}}\n#endif"));
-        }
-        false => {
-            lines.push(STATE.to_string());
-            lines.push(format!("    if (i < count) {name}<true>({arrays}count);\n}}\n#endif"));
-        }
+    if has_phases(function.program) {
+        lines.push("    if (count == 0) return;".to_string());
+        lines.push(
+            "    // all threads of a block pass all phases: those beyond the last state compute it, too".to_string(),
+        );
+        lines.push(state("own_"));
+        lines.push("    const unsigned long long i = own_ < count ? own_ : count - 1;".to_string());
+        lines.push(format!("    {name}<true, true>({arrays}count);"));
+    } else {
+        lines.push(state("i"));
+        lines.push(format!("    if (i < count) {name}<true>({arrays}count);"));
     }
+    lines.push("}\n#endif".to_string());
 }
 
 fn rows(
@@ -190,7 +191,7 @@ fn rows(
     lines.push(format!("// 32 threads, at most {threads}."));
     lines.push(head(CudaLayout::Rows, threads));
     if of_thread == 0 {
-        lines.push(STATE.to_string());
+        lines.push(state("i"));
         let arrays: String = staged.iter().map(|(x, _)| format!("{0} + i * {1}, ", x.name, x.length)).collect();
         lines.push(format!("    if (i < count) {name}<false>({arrays}1);\n}}\n#endif"));
         return;
