@@ -9,6 +9,7 @@ before it is timed; the runners take turns, and each figure is the least of all 
 """
 
 import argparse
+import contextlib
 import importlib.metadata
 import importlib.util
 import os
@@ -188,7 +189,7 @@ def error(found, reference):
     return (np.abs(found - reference).max(1) / size).max() / np.finfo(np.float32).eps
 
 
-def main():
+def main(page):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--states", default="4096,65536,1048576", help="states in an array, several by commas")
     counts = [int(count) for count in parser.parse_args().states.split(",")]
@@ -197,14 +198,14 @@ def main():
     there = {name: peer for name, peer in PEERS.items() if importlib.util.find_spec(peer[0])}
     versions = ", ".join(f"{name} {importlib.metadata.version(module)}" for name, (module, _) in there.items())
     device = jax.devices()[0]
-    print(f"\n## Beside other libraries\n\nWritten by benches/gpu/peers.py on {device.device_kind}, JAX {jax.__version__}: {versions}.")
-    print("f32, arrays (N, n) of the device, 10⁹ states a second, the least time of all rounds, a call's launch and the wait for it")
-    print("included; in brackets the error in ε. MuJoCo Warp runs the stages that the quantity needs, as one CUDA graph.")
+    print(f"\n## Beside other libraries\n\nWritten by benches/gpu/peers.py on {device.device_kind}, JAX {jax.__version__}: {versions}.", file=page)
+    print("f32, arrays (N, n) of the device, 10⁹ states a second, the least time of all rounds, a call's launch and the wait for it", file=page)
+    print("included; in brackets the error in ε. MuJoCo Warp runs the stages that the quantity needs, as one CUDA graph.", file=page)
     random = np.random.default_rng(1763)
     with tempfile.TemporaryDirectory() as folder:
         for robot, text in robots().items():
             model = mozzi.Model.from_urdf_string(text)
-            print(f"\n### {robot}\n\n| quantity | states |", " | ".join(there), "|\n|---|---|" + "---|" * len(there))
+            print(f"\n### {robot}\n\n| quantity | states |", " | ".join(there), "|\n|---|---|" + "---|" * len(there), file=page)
             urdf = Path(folder) / "robot.urdf"
             urdf.write_text(text)
             for count in counts:
@@ -219,8 +220,10 @@ def main():
                         f"{count / seconds[name] / 1e9:.4f} ({errors[name]:.1f})" if name in runners else ""
                         for name in there
                     ]
-                    print(f"| {quantity.replace('_', ' ')} | {count} |", " | ".join(cells), "|", flush=True)
+                    print(f"| {quantity.replace('_', ' ')} | {count} |", " | ".join(cells), "|", file=page, flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    page = sys.stdout
+    with contextlib.redirect_stdout(sys.stderr):  # Warp says what it loads
+        main(page)
