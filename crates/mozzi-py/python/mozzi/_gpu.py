@@ -53,7 +53,7 @@ class Gpu:
             if out is not None or packed:
                 raise TypeError(f"{quantity} with gradients takes neither out nor packed")
             return _differentiable(self, quantity, inputs, frame, stream)
-        views = [view(x, f"argument {k}") for k, x in enumerate(inputs, 1)]
+        views = [_read(x, f"argument {k}") for k, x in enumerate(inputs, 1)]
         dtype = views[0].dtype
         kernel = self._kernel(quantity, frame, dtype, packed)
         names = kernel.inputs
@@ -123,13 +123,13 @@ class Gpu:
         if _wants_gradient((theta, dtheta, tau, gains, target)):
             raise TypeError("a rollout in one kernel has no gradient: see mozzi.torch.Model.rollout, or detach")
         n, nq = self.model.n, self.model.nq
-        views = [view(theta, "theta"), view(dtheta, "dtheta")]
+        views = [_read(theta, "theta"), _read(dtheta, "dtheta")]
         dtype, leading = views[0].dtype, self._leading(views[0].shape, "theta", nq)
         self._check(views[1], "dtheta", self._shape(leading, (n,)), dtype)
         torques, steps = self._torques(tau, steps, leading, dtype)
         feedback = None
         if gains is not None:
-            pair = [view(gains, "gains"), view(target, "target")]
+            pair = [_read(gains, "gains"), _read(target, "target")]
             self._check(pair[0], "gains", (n, 2 * n), dtype)
             self._check(pair[1], "target", self._shape(leading, (nq + n,)), dtype)
             feedback = [x.address for x in pair]
@@ -175,7 +175,7 @@ class Gpu:
             if steps is None:
                 raise TypeError("rollout takes tau or steps, found neither")
             return None, steps
-        torques = view(tau, "tau")
+        torques = _read(tau, "tau")
         if len(torques.shape) != len(leading) + 2:
             expected = f"(..., K, {self.model.n})" if self.layout == "rows" else f"(K, {self.model.n}, N)"
             raise ValueError(f"tau has shape {torques.shape}, expected {expected}")
@@ -215,6 +215,11 @@ def packages() -> list[str]:
     return [] if found is None else [str(Path(place).parent) for place in found.submodule_search_locations or ()]
 
 
+def _read(x: Any, name: str) -> View:
+    """Where an argument is. PyTorch gives no address of a tensor that requires a gradient, even if none is wanted."""
+    return view(x.detach() if framework_of(x) == "torch" else x, name)
+
+
 def _wants_gradient(inputs: tuple[Any, ...]) -> bool:
     if framework_of(inputs[0]) != "torch":
         return False
@@ -240,13 +245,13 @@ def _differentiable(gpu: Gpu, quantity: str, inputs: tuple[Any, ...], frame: str
         @staticmethod
         def forward(ctx: Any, *x: Any) -> Any:
             ctx.save_for_backward(*x)
-            return gpu.compute(quantity, *(t.detach() for t in x), frame=frame, stream=stream)
+            return gpu.compute(quantity, *x, frame=frame, stream=stream)
 
         @staticmethod
         @autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: Any, w: Any) -> Any:
-            saved = [t.detach() for t in ctx.saved_tensors]
-            found = gpu.compute(product, *saved, w.contiguous().detach(), frame=frame, stream=stream)
+            saved = ctx.saved_tensors
+            found = gpu.compute(product, *saved, w.contiguous(), frame=frame, stream=stream)
             if not quaternions:
                 return found
             torch = import_module("torch")

@@ -48,7 +48,9 @@ def refuse_forward_mode(x):
         for t in x:
             if forward_ad.unpack_dual(t, level=0).tangent is not None:
                 raise NotImplementedError(
-                    "forward mode in torch.compile: call torch.func.jvp outside, or without compile"
+                    f"forward mode on {t.device}: derivatives there are of first order, in reverse mode"
+                    if t.is_cuda
+                    else "forward mode in torch.compile: call torch.func.jvp outside, or without compile"
                 )
 
 

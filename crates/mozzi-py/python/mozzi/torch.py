@@ -28,7 +28,7 @@ from torch._C import _are_functorch_transforms_active as _is_transformed
 from torch._C._functorch import is_legacy_batchedtensor
 from torch.autograd import forward_ad
 
-from . import _mozzi, _tangent, _torch_gpu  # noqa: F401  the last one's kernels of value_op
+from . import _mozzi, _tangent, _torch_gpu
 from ._torch_operators import known, packed_op, refuse_forward_mode, run, to_positions, value_op
 from ._torch_rollout import check_rows, rollout, steps
 from ._torch_tensors import DTYPES, MODELS, arrays, batched, check
@@ -55,8 +55,19 @@ def _to_velocities(quantity, theta, rate):
     return _tangent.velocities(torch, quantity.quaternions, theta, rate) if quantity.quaternions else rate
 
 
+def _value(quantity, x):
+    return _torch_gpu.value(list(x), quantity.key) if x[0].is_cuda else torch.from_numpy(quantity.value(arrays(x)))
+
+
 def _derived(quantity, method, count, of_parameters, tensors):
     """The same on tensors."""
+    if tensors[0].is_cuda:
+        if method != "vjp":
+            raise NotImplementedError(
+                f"derivatives of {quantity.name} on {tensors[0].device} are of first order, in reverse mode"
+            )
+        w, *x = tensors
+        return _torch_gpu.pull_back(x, w, quantity.key, of_parameters)
     if any(map(is_legacy_batchedtensor, tensors)):
         # of torch.autograd.grad(is_grads_batched=True): torch calls an operator of one tensor for each of them
         leading = tensors[-1].shape[:-1]
@@ -74,7 +85,7 @@ def _derived(quantity, method, count, of_parameters, tensors):
 class _Value(torch.autograd.Function):
     @staticmethod
     def forward(quantity, *x):
-        return torch.from_numpy(quantity.value(arrays(x)))
+        return _value(quantity, x)
 
     @staticmethod
     def setup_context(ctx, inputs, output):
@@ -226,7 +237,8 @@ def _call(robot, name, x, frame=None):
         check((*quantity.inputs, "parameters"), x)
         if x[0].is_cuda:
             refuse_forward_mode(x)
-            return value_op(list(_broadcast(x)), key)
+            # torch's custom operators have no rule for transforms
+            return _Value.apply(quantity, *_broadcast(x)) if _is_transformed() else value_op(list(_broadcast(x)), key)
     if _is_transformed() or forward_ad._current_level >= 0:
         return _Value.apply(quantity, *_broadcast(x))
     if not is_plain:
