@@ -42,7 +42,7 @@ impl Source {
             inputs: vec![array("theta", nq), array("dtheta", n)],
             outputs: vec![array("theta_table", nq), array("dtheta_table", n)],
             form: Form { precision, layout, is_packed: false },
-            block: Block { threads: THREADS, shared_bytes: 0 },
+            block: Block { threads: THREADS, shared_bytes: 0, states: 1 },
             kernels: "-DMOZZI_ONLY_ROWS -DMOZZI_ONLY_COLUMNS", // the function of one state alone
         })
     }

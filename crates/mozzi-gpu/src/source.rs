@@ -126,6 +126,12 @@ impl Source {
         self.block.threads
     }
 
+    /// States that a thread should compute if there are many: more than 1 if the program is so long that its
+    /// instructions do not stay in a multiprocessor. The kernel is right with any number of threads.
+    pub fn states_of_thread(&self) -> usize {
+        self.block.states
+    }
+
     /// Bytes that a state reads and writes.
     pub fn bytes_of_state(&self) -> usize {
         let numbers: usize = self.inputs.iter().chain(&self.outputs).map(|array| array.length).sum();

@@ -6,8 +6,10 @@ mod common;
 use common::host::{Call, exists, run};
 use common::{LAYOUTS, PRECISIONS, embedded, error, form, inputs, quantities, robots, transposed};
 use mozzi::quantities::{
-    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Query, TaskSpaceDynamics,
+    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsVjp, MassMatrix, Query,
+    TaskSpaceDynamics,
 };
+use mozzi::testing::{limbs, tree};
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia, Sym3, Vec3};
 use mozzi_codegen::{CudaLayout, Precision};
 use mozzi_gpu::{Error, Form, Source};
@@ -99,17 +101,27 @@ fn long_rows_of_sparse_results_pass_through_slots() {
     assert!(!arm.text().contains("_slots"));
 }
 
-/// Long programs by columns, whose numbers are compared above.
+/// Programs of many joints, by columns, of which each thread takes several states.
 #[test]
-fn the_threads_of_a_block_pass_the_phases_of_a_long_program_together() {
-    let model = robots().pop().expect("the floating quadruped");
-    let source =
-        |model: &Model| Source::new(model, InverseDynamicsDerivatives, form(Precision::F32, CudaLayout::Columns));
-    let long = source(&model).expect("a source");
-    let waits = long.text().matches("if (phases) __syncthreads();").count();
-    assert!(waits >= 5 && long.text().contains("<true, true>(") && long.threads() == 256, "{waits}");
-    let arm = source(&embedded("panda")).expect("a source");
-    assert!(!arm.text().contains("phases") && arm.threads() == 128);
+fn long_programs_are_in_parts() {
+    if !exists() {
+        return;
+    }
+    let model = limbs(&tree(3, 28, 0), 7);
+    let query = Query::from(InverseDynamicsVjp);
+    for precision in PRECISIONS {
+        let form = form(precision, CudaLayout::Columns);
+        let source = Source::new(&model, query, form).expect("a text");
+        assert!(source.states_of_thread() > 1 && source.text().contains(" kept_["), "{}", model.n());
+        let found = results(&format!("parts {precision:?}"), vec![(&model, query, form)]);
+        let epsilon = if precision == Precision::F64 { f64::EPSILON } else { f32::EPSILON.into() };
+        for (found, expected) in found[0].iter().zip(expected(&model, query, precision)) {
+            let error = error(found, &expected, model.n()) / epsilon;
+            assert!(error < tolerance(query), "{precision:?}: {error} eps");
+        }
+    }
+    let arm = Source::new(&embedded("panda"), query, form(Precision::F32, CudaLayout::Columns)).expect("a text");
+    assert!(arm.states_of_thread() == 1 && !arm.text().contains("kept_"));
 }
 
 #[test]

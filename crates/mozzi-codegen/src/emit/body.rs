@@ -2,11 +2,28 @@
 
 use super::dialect::{Dialect, Emitted, Sines};
 use crate::function::Function;
-use crate::program::{Step, Value};
+use crate::program::{Program, Step, Value};
 use std::collections::BTreeMap;
+
+/// Which steps the results need.
+pub(super) fn needed(program: &Program) -> Vec<bool> {
+    let mut is_needed = vec![false; program.steps.len()];
+    program.outputs.iter().flat_map(|output| &output.values).for_each(|&value| is_needed[value as usize] = true);
+    for (place, step) in program.steps.iter().enumerate().rev() {
+        if is_needed[place] {
+            step.operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
+        }
+    }
+    is_needed
+}
 
 /// Emits one line for each step, and each output entry as soon as it is known.
 pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
+    of_steps(function, dialect).into_iter().flatten().collect()
+}
+
+/// The lines of each step. A sine and a cosine of one angle are computed together, where the first of them is.
+pub(super) fn of_steps(function: &Emitted, dialect: &dyn Dialect) -> Vec<Vec<String>> {
     let steps = &function.program.steps;
     let operand = |value: Value| match steps[value as usize] {
         Step::Constant(x) => dialect.literal(x),
@@ -19,12 +36,7 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
             entries[*value as usize].push((&argument.name, index));
         }
     }
-    let mut is_needed: Vec<bool> = entries.iter().map(|entries| !entries.is_empty()).collect();
-    for (place, step) in steps.iter().enumerate().rev().filter(|(_, step)| !step.operands().is_empty()) {
-        if is_needed[place] {
-            step.operands().iter().for_each(|&operand| is_needed[operand as usize] = true);
-        }
-    }
+    let is_needed = needed(function.program);
     // the steps of the sine and the cosine of each angle
     let mut angles: BTreeMap<Value, [Option<Value>; 2]> = BTreeMap::new();
     for (place, step) in (0..).zip(steps).filter(|(place, _)| is_needed[*place as usize]) {
@@ -33,8 +45,9 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
         }
     }
     let is_step = |value: Value| matches!(steps[value as usize], Step::Apply(..));
-    let mut lines = Vec::new();
+    let mut all = vec![Vec::new(); steps.len()];
     for (place, step) in (0..).zip(steps).filter(|(place, _)| is_needed[*place as usize]) {
+        let lines: &mut Vec<String> = &mut all[place as usize];
         if let Step::Apply(function, operands) = step {
             let name = format!("v{place}");
             let [a, b, c] =
@@ -75,5 +88,5 @@ pub(super) fn lines(function: &Emitted, dialect: &dyn Dialect) -> Vec<String> {
         let value = operand(place);
         lines.extend(entries[place as usize].iter().map(|&(array, index)| dialect.store(array, index, &value)));
     }
-    lines
+    all
 }

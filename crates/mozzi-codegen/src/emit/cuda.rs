@@ -4,6 +4,7 @@
 //! program is emitted only once.
 
 mod kernels;
+mod parts;
 mod staging;
 
 pub use kernels::CudaLayout;
@@ -21,7 +22,7 @@ struct Cuda<'s> {
     c: C,
     /// The robot's name, with which all names of the file begin.
     prefix: &'s str,
-    /// The file's constants, keyed by their bits.
+    /// The file's constants of 64 bits, other than zero.
     constants: RefCell<Vec<f64>>,
     /// The results of the present function whose rows are in slots.
     slots: RefCell<BTreeMap<String, Slots>>,
@@ -37,7 +38,11 @@ impl Cuda<'_> {
 }
 
 impl Dialect for Cuda<'_> {
+    /// Instructions take numbers of 32 bits themselves; of 64 bits they take them from constant memory.
     fn literal(&self, x: f64) -> String {
+        if !self.is_f64() || x == 0.0 {
+            return self.c.literal(x);
+        }
         let mut constants = self.constants.borrow_mut();
         let index = constants.iter().position(|known| known.to_bits() == x.to_bits()).unwrap_or_else(|| {
             constants.push(x);

@@ -116,11 +116,26 @@ impl Kernel {
         let all =
             u32::try_from(states).map_err(|_| Error::Driver { call: "cuLaunchKernel", reason: too_many(states) })?;
         let threads = u32::try_from(self.source.threads()).unwrap_or(u32::MAX);
-        let (grid, block) = ((all.div_ceil(threads), 1, 1), (threads, 1, 1));
+        let (grid, block) = ((self.blocks(all, threads)?, 1, 1), (threads, 1, 1));
         let stream = stream as sys::CUstream;
         // SAFETY: the function is loaded; the parameters are copied during the call; the caller answers for the rest
         unsafe { result::launch_kernel(self.module.function, grid, block, 0, stream, parameters) }
             .map_err(failed("cuLaunchKernel"))
+    }
+
+    /// Blocks for these states: a thread takes several states if the kernel is in parts and there are enough states to
+    /// occupy all multiprocessors.
+    fn blocks(&self, states: u32, threads: u32) -> Result<u32, Error> {
+        /// Threads of a multiprocessor if each has all registers that it can have.
+        const RESIDENT: u32 = 256;
+        let blocks = states.div_ceil(threads);
+        let states_of_thread = u32::try_from(self.source.states_of_thread()).unwrap_or(1);
+        if states_of_thread == 1 {
+            return Ok(blocks);
+        }
+        let multiprocessors = u32::try_from(self.device.multiprocessors()?).unwrap_or(u32::MAX);
+        let all = multiprocessors.saturating_mul(RESIDENT.div_ceil(threads));
+        Ok(blocks.min(blocks.div_ceil(states_of_thread).max(all)))
     }
 
     /// Launches it on arrays of the device, on the legacy default stream.

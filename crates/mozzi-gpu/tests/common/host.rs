@@ -90,7 +90,11 @@ pub fn run(name: &str, calls: &[Call]) -> Vec<Vec<Vec<f64>>> {
             arguments += &format!("y{i}.data(), ");
         }
         arguments += call.rollout.as_ref().map_or("", |rollout| &rollout.arguments);
-        body += &format!("        launch([&] {{ k{k}::{}({arguments}{states}); }}, {states});\n", source.entry());
+        let of_thread = source.states_of_thread().min(3); // the last threads have fewer
+        body += &format!(
+            "        launch([&] {{ k{k}::{}({arguments}{states}); }}, {states}, {of_thread});\n",
+            source.entry()
+        );
         (0..source.outputs().len()).for_each(|i| body += &format!("        put(y{i});\n"));
         body += "    }\n";
     }

@@ -5,12 +5,14 @@
 //! number of padding, so that the threads' rows begin in different banks. Outputs return the same way; of those that
 //! do not fit, only different entries are there, and the copy spreads them.
 //!
-//! By columns the threads of a block go through a long program together: see [`has_phases`].
+//! By columns a thread goes through a long program in parts, each for several states: see [`parts`].
 
 use super::super::body;
 use super::super::dialect::{Argument, Emitted, Source};
-use super::staging::{Block, Staging, has_phases, plan};
+use super::parts::{self, Part, parts};
+use super::staging::{Block, Staging, plan};
 use super::{Cuda, NONE};
+use crate::program::Value;
 
 /// Order of the numbers of many states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,13 +33,18 @@ impl CudaLayout {
     }
 }
 
-/// A thread's state, by this name.
-fn state(name: &str) -> String {
-    format!("    const unsigned long long {name} = (unsigned long long) blockIdx.x * blockDim.x + threadIdx.x;")
-}
+/// Registers that run out go to shared memory first, which rows need, but not columns.
+const SPILLED: &str = "#if defined __CUDA_ARCH__ && __CUDACC_VER_MAJOR__ >= 13
+    asm volatile (\".pragma \\\"enable_smem_spilling\\\";\");
+#endif";
 
-/// Lines of a phase.
-const PHASE: usize = 1000;
+/// A thread's number.
+const THREAD: &str = "(unsigned long long) blockIdx.x * blockDim.x + threadIdx.x";
+
+/// The stride of columns, where the compiler does not see that all threads have the same. It would compute addresses
+/// in registers that all share, and add the thread's own in twice as many instructions. For short programs that is
+/// faster nevertheless: others wait for the same units.
+const STRIDE: &str = "    const unsigned long long stride_ = (unsigned) count + (threadIdx.x >> 31);";
 
 /// How results are stored. By columns the address is computed for this one store: compilers would otherwise share
 /// offsets between arrays and keep hundreds of them in registers.
@@ -48,8 +55,8 @@ pub(super) fn put(cuda: &Cuda) -> Vec<String> {
         "\n// Entry k of a result; columns are in global memory, rows may have other places, or none, for equal \
          entries.\ntemplate <bool columns, unsigned k, unsigned slot = k>\nstatic __device__ \
          __forceinline__ void {prefix}_put({number} *__restrict__ to, const unsigned long long stride, const {number} \
-         x)\n{{\n#ifdef __CUDA_ARCH__\n    if (columns) {{\n        asm volatile(\"{{ .reg .u64 a; mad.wide.u32 a, %1, %2, %0; \
-         st.global.f{bits} [a], %3; }}\"\n            :: \"l\"(__cvta_generic_to_global(to)), \"r\"((unsigned) stride), \
+         x)\n{{\n#ifdef __CUDA_ARCH__\n    if (columns) {{\n        asm volatile(\"{{ .reg .u64 a; mul.wide.u32 a, %1, %2; \
+         add.u64 a, a, %0; st.global.f{bits} [a], %3; }}\"\n            :: \"l\"(__cvta_generic_to_global(to)), \"r\"((unsigned) stride), \
          \"n\"(k * (unsigned) sizeof x), \"{constraint}\"(x));\n        return;\n    }}\n#endif\n#ifndef MOZZI_ONLY_COLUMNS\n    if (!columns && slot != k) {{\n        if (slot != \
          {NONE}u) to[slot * stride] = x;\n        return;\n    }}\n#endif\n    to[k * stride] = x;\n}}"
     )]
@@ -91,13 +98,19 @@ pub(super) fn copies(source: &Source, cuda: &Cuda) -> Vec<String> {
     lines
 }
 
-/// The function of one state, and its kernels.
-pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
-    let (number, name) = (cuda.c.number(), format!("{}_{}", cuda.prefix, function.name));
+/// The arrays that a function takes.
+fn parameters(function: &Emitted, cuda: &Cuda) -> String {
+    let number = cuda.c.number();
     let pointer = |before: &str, argument: &Argument| format!("{before}{number} *__restrict__ {}", argument.name);
     let inputs = function.inputs.iter().map(|input| pointer("const ", input));
-    let arguments: Vec<String> = inputs.chain(function.outputs.iter().map(|output| pointer("", output))).collect();
-    let arguments = arguments.join(", ");
+    let all: Vec<String> = inputs.chain(function.outputs.iter().map(|output| pointer("", output))).collect();
+    all.join(", ")
+}
+
+/// The function of one state, and its kernels.
+pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
+    let name = format!("{}_{}", cuda.prefix, function.name);
+    let arguments = parameters(function, cuda);
     let (block, staging) = plan(function.program, CudaLayout::Rows, cuda.c.0);
     let outputs = function.outputs.iter().zip(&staging[function.inputs.len()..]);
     let slots = outputs.filter_map(|(output, staging)| match staging {
@@ -118,18 +131,11 @@ pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     lines.extend(function.lines().iter().map(|line| format!("// {line}")));
     lines.push("// Of one state: entry k of an array is at k * stride; columns have a stride below 2^32.".to_string());
     lines.extend(cuda.slots.borrow().keys().map(|output| format!("// Rows of {output} are in slots.")));
-    let has_phases = has_phases(function.program);
-    let phases = if has_phases { ", bool phases = false" } else { "" };
     lines.push(format!(
-        "template <bool columns{phases}>\nstatic __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
+        "template <bool columns>\nstatic __device__ __forceinline__ void {name}({arguments}, const unsigned long long stride)\n{{"
     ));
     lines.extend(function.unused().map(|input| format!("    (void) {};", input.name)));
-    for (k, line) in body::lines(function, cuda).iter().enumerate() {
-        if has_phases && k % PHASE == PHASE - 1 {
-            lines.push("    if (phases) __syncthreads();".to_string());
-        }
-        lines.push(format!("    {line}"));
-    }
+    lines.extend(body::lines(function, cuda).iter().map(|line| format!("    {line}")));
     lines.push("}".to_string());
     let head = |layout: CudaLayout, threads: usize| {
         format!(
@@ -150,26 +156,60 @@ fn columns(
     head: impl Fn(CudaLayout, usize) -> String,
     lines: &mut Vec<String>,
 ) {
-    let Block { threads, .. } = Block::of(function.program, CudaLayout::Columns, cuda.c.0);
+    let Block { threads, states, .. } = Block::of(function.program, CudaLayout::Columns, cuda.c.0);
     let arrays: String = arrays(function).map(|argument| format!("{} + i, ", argument.name)).collect();
     lines.push("\n#ifndef MOZZI_ONLY_ROWS".to_string());
-    lines.push(format!(
-        "// Of `count` states, a thread each: entry k of state i at k * count + i; blocks of at most {threads} threads."
-    ));
-    lines.push(head(CudaLayout::Columns, threads));
-    if has_phases(function.program) {
-        lines.push("    if (count == 0) return;".to_string());
-        lines.push(
-            "    // all threads of a block pass all phases: those beyond the last state compute it, too".to_string(),
-        );
-        lines.push(state("own_"));
-        lines.push("    const unsigned long long i = own_ < count ? own_ : count - 1;".to_string());
-        lines.push(format!("    {name}<true, true>({arrays}count);"));
-    } else {
-        lines.push(state("i"));
-        lines.push(format!("    if (i < count) {name}<true>({arrays}count);"));
+    let parts = parts(function.program);
+    if let Some((parts, _)) = &parts {
+        let steps = body::of_steps(function, cuda);
+        let head = |k: usize| {
+            format!(
+                "// Of one state; kept: its numbers for later parts.\nstatic __device__ __forceinline__ void \
+                 {name}_{k}({}, {} *__restrict__ kept, const unsigned long long stride)\n{{\n    const bool columns = true;",
+                parameters(function, cuda),
+                cuda.c.number()
+            )
+        };
+        lines.extend(parts.iter().enumerate().flat_map(|(k, part)| of_part(part, &steps, cuda, head(k))));
     }
-    lines.push("}\n#endif".to_string());
+    lines.push(
+        "// Of `count` states, a thread each: entry k of state i at k * count + i; blocks of at most".to_string(),
+    );
+    lines.push(format!("// {threads} threads."));
+    if parts.is_some() {
+        lines.push(format!("// A thread computes {states} states, if there are fewer threads than states."));
+    }
+    lines.push(head(CudaLayout::Columns, threads));
+    let is_long = parts::is_long(function.program);
+    if is_long {
+        lines.extend([SPILLED, STRIDE].map(String::from));
+    }
+    let stride = if is_long { "stride_" } else { "count" };
+    let Some((parts, kept)) = parts else {
+        lines.push(format!("    const unsigned long long i = {THREAD};"));
+        lines.push(format!("    if (i < count) {name}<true>({arrays}{stride});\n}}\n#endif"));
+        return;
+    };
+    lines.push("    const unsigned long long all_ = (unsigned long long) gridDim.x * blockDim.x;".to_string());
+    lines.push(format!("    {} kept_[{states}][{kept}];\n#pragma unroll 1", cuda.c.number()));
+    lines.push(format!("    for (unsigned long long first_ = {THREAD}; first_ < count; first_ += {states} * all_) {{"));
+    for k in 0..parts.len() {
+        lines.push(format!("#pragma unroll 1\n        for (unsigned k_ = 0; k_ < {states}; ++k_) {{"));
+        lines.push("            const unsigned long long i = first_ + k_ * all_;".to_string());
+        lines.push(format!("            if (i < count) {name}_{k}({arrays}kept_[k_], {stride});\n        }}"));
+    }
+    lines.push("    }\n}\n#endif".to_string());
+}
+
+/// A part of a function, by columns.
+fn of_part(part: &Part, steps: &[Vec<String>], cuda: &Cuda, head: String) -> Vec<String> {
+    let mut lines = vec![head];
+    let load = |(value, place): &(Value, usize)| format!("    const {} v{value} = kept[{place}];", cuda.c.number());
+    lines.extend(part.loads.iter().map(load));
+    lines.extend(steps[part.steps.clone()].iter().flatten().map(|line| format!("    {line}")));
+    lines.extend(part.stores.iter().map(|(value, place)| format!("    kept[{place}] = v{value};")));
+    lines.push("}\n".to_string());
+    lines
 }
 
 fn rows(
@@ -191,7 +231,7 @@ fn rows(
     lines.push(format!("// 32 threads, at most {threads}."));
     lines.push(head(CudaLayout::Rows, threads));
     if of_thread == 0 {
-        lines.push(state("i"));
+        lines.push(format!("    const unsigned long long i = {THREAD};"));
         let arrays: String = staged.iter().map(|(x, _)| format!("{0} + i * {1}, ", x.name, x.length)).collect();
         lines.push(format!("    if (i < count) {name}<false>({arrays}1);\n}}\n#endif"));
         return;

@@ -2,6 +2,7 @@
 
 use super::super::Precision;
 use super::kernels::CudaLayout;
+use super::parts::{self, parts};
 use crate::program::{Output, Program, Step, Value};
 use std::collections::BTreeMap;
 
@@ -15,6 +16,8 @@ pub struct Block {
     pub threads: usize,
     /// Bytes of shared memory, through which rows pass.
     pub shared_bytes: usize,
+    /// States that a thread computes together if there are many: more than one if the program is in parts.
+    pub states: usize,
 }
 
 impl Block {
@@ -22,15 +25,6 @@ impl Block {
     pub fn of(program: &Program, layout: CudaLayout, precision: Precision) -> Block {
         plan(program, layout, precision).0
     }
-}
-
-/// Operations beyond which a program is cut into phases by columns: its code, 16 bytes an instruction, no longer fits
-/// into the instruction cache of a multiprocessor, and warps at different places would load it over and over.
-const LONG: usize = 5000;
-
-/// Whether the threads of a block go through the program together, phase by phase.
-pub(super) fn has_phases(program: &Program) -> bool {
-    program.steps.iter().filter(|step| matches!(step, Step::Apply(..))).count() > LONG
 }
 
 /// How the rows of an array pass between global memory and a thread.
@@ -98,13 +92,15 @@ pub(super) fn plan(program: &Program, layout: CudaLayout, precision: Precision) 
     let lengths: Vec<usize> = inputs.chain(program.outputs.iter().map(|output| output.values.len())).collect();
     let whole = |&n: &usize| if layout == CudaLayout::Rows && n > 1 { Staging::Whole } else { Staging::InPlace };
     let mut staging: Vec<Staging> = lengths.iter().map(whole).collect();
+    let is_in_parts = layout == CudaLayout::Columns && parts(program).is_some();
+    let states = if is_in_parts { parts::STATES } else { 1 };
     let block = |staging: &[Staging]| {
         let row = staging.iter().zip(&lengths).map(|(staging, &n)| staging.width(n)).sum::<usize>();
         let of_thread = row * if precision.is_f64() { 8 } else { 4 };
-        // one block occupies a multiprocessor with 255 registers a thread: its warps are all that share the cache
-        let most = if layout == CudaLayout::Columns && has_phases(program) { 256 } else { 128 };
-        let threads = [most, 64, 32].into_iter().find(|threads| threads * of_thread <= SHARED_BYTES);
-        threads.map(|threads| Block { threads, shared_bytes: threads * of_thread })
+        // without shared memory small blocks: the next begins when all warps of one have ended
+        let sizes: &[usize] = if layout == CudaLayout::Rows { &[128, 64, 32] } else { &[64] };
+        let threads = sizes.iter().copied().find(|threads| threads * of_thread <= SHARED_BYTES);
+        threads.map(|threads| Block { threads, shared_bytes: threads * of_thread, states })
     };
     if block(&staging).is_none() {
         for (staging, output) in staging[program.inputs.len()..].iter_mut().zip(&program.outputs) {
