@@ -21,6 +21,8 @@ from xml.etree import ElementTree
 os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")  # Warp needs memory, too
 
 import jax
+
+jax.config.update("jax_default_matmul_precision", "highest")  # else frax multiplies in TF32
 import jax.numpy as jnp
 import mozzi
 import mozzi.jax
@@ -189,6 +191,17 @@ def error(found, reference):
     return (np.abs(found - reference).max(1) / size).max() / np.finfo(np.float32).eps
 
 
+def of_each(what, libraries, function):
+    """The function of each library's value, without those that fail, as with too little memory."""
+    found = {}
+    for name, x in libraries.items():
+        try:
+            found[name] = function(x)
+        except Exception as failure:
+            print(f"{name}, {what}: {type(failure).__name__}: {failure}", file=sys.stderr)
+    return found
+
+
 def main(page):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--states", default="4096,65536,1048576", help="states in an array, several by commas")
@@ -210,14 +223,15 @@ def main(page):
             urdf.write_text(text)
             for count in counts:
                 arrays = [jnp.asarray(random.uniform(-1, 1, (count, model.n)), jnp.float32) for _ in range(4)]
-                made = {name: make(model, urdf, arrays) for name, (_, make) in there.items()}
+                made = of_each(f"{robot}, {count} states", there, lambda peer: peer[1](model, urdf, arrays))
                 for quantity, inputs in INPUTS.items():
                     runners = {name: runs[quantity] for name, runs in made.items() if quantity in runs}
                     reference = expected(model, quantity, arrays[:inputs])
-                    errors = {name: error(run(), reference) for name, run in runners.items()}
-                    seconds = dict(zip(runners, race(list(runners.values()), rounds=7, seconds=0.05)))
+                    errors = of_each(f"{robot}, {quantity}", runners, lambda run: error(run(), reference))
+                    racing = [runners[name] for name in errors]
+                    seconds = dict(zip(errors, race(racing, rounds=7, seconds=0.05)))
                     cells = [
-                        f"{count / seconds[name] / 1e9:.4f} ({errors[name]:.1f})" if name in runners else ""
+                        f"{count / seconds[name] / 1e9:.4f} ({errors[name]:.1f})" if name in errors else ""
                         for name in there
                     ]
                     print(f"| {quantity.replace('_', ' ')} | {count} |", " | ".join(cells), "|", file=page, flush=True)

@@ -16,6 +16,9 @@ const CHECKED: usize = 500;
 /// Different random states; the rest repeats them.
 const RANDOM: usize = 4096;
 
+/// The number of states is a multiple of this if fewer fit than asked for: columns that begin within a sector of memory
+/// take twice as long.
+const MULTIPLE: usize = 1024;
 /// Bytes of all arrays, at most: a humanoid's matrices would not fit.
 const BYTES: usize = 1 << 30;
 
@@ -45,7 +48,8 @@ pub fn speed<T: Real>(
     states: usize,
 ) -> Result<Speed, Box<dyn Error>> {
     let kernel = device.kernel(source)?;
-    let states = states.min(BYTES / source.bytes_of_state());
+    let fitting = BYTES / source.bytes_of_state();
+    let states = if states <= fitting { states } else { fitting / MULTIPLE * MULTIPLE };
     let rows = rows(robot, query);
     let form = source.form();
     let place = |length: usize, i: usize, k: usize| match form.layout {

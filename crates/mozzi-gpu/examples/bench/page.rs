@@ -16,7 +16,7 @@ pub fn text(
     let (major, minor) = nvrtc.version();
     let mut text = format!(
         "# GPU kernels, measured\n\nWritten by `cargo xtask gpu-bench`. {}, {}, {} multiprocessors, {:.2} GHz at most, NVRTC \
-         {major}.{minor}. At most {states} states and 1 GiB of arrays, 10⁹ states a second: median of 7 repetitions of at least 20 ms \
+         {major}.{minor}. At most {states} states and 1 GiB of arrays, a multiple of 1024 then, 10⁹ states a second: median of 7 repetitions of at least 20 ms \
          on arrays of the device, in brackets the slowest; then once from arrays of the host and back, copies and \
          allocation included. *memory* is the share of the {:.2} TB/s that a kernel reaches which only copies. Errors are \
          the largest of 500 states against the CPU in f64 at the same numbers, relative to the state's largest entry, in \
