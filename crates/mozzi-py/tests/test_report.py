@@ -66,6 +66,15 @@ def test_what_is_wrong_is_named(ur5, tmp_path):
         ur5.report(path, meshes="all")
     with pytest.raises(ValueError, match=r"theta has shape \(51, 2\), expected \(51, 6\)"):
         ur5.report(path, fall(mozzi.models.double_pendulum()))
+    for argument, needs in [
+        ({"title": "falls"}, "trajectory"),
+        ({"rows": 10}, "trajectory"),
+        ({"meshes": "none"}, "shapes"),
+        ({"mesh_root": tmp_path}, "shapes"),
+    ]:
+        name = next(iter(argument))
+        with pytest.raises(ValueError, match=f"{name} is given without {needs}: it would have no effect"):
+            ur5.report(path, **argument)
     with pytest.raises(ValueError, match="no_robot"):
         ur5.report(path, shapes="no_robot")
     with pytest.raises(OSError, match="nowhere"):

@@ -23,6 +23,14 @@ fn meshes(name: &str) -> PyResult<Meshes> {
     }
 }
 
+/// An error if an argument was given that needs another.
+fn without_effect(is_given: bool, name: &str, needs: &str) -> PyResult<()> {
+    match is_given {
+        true => Err(PyValueError::new_err(format!("{name} is given without {needs}: it would have no effect"))),
+        false => Ok(()),
+    }
+}
+
 /// The shapes of a file; a warning for each that is left out.
 pub(super) fn drawing(
     py: Python<'_>,
@@ -34,7 +42,11 @@ pub(super) fn drawing(
     if let Some(folder) = mesh_root.as_deref().filter(|folder| !folder.is_dir()) {
         return Err(PyValueError::new_err(format!("mesh_root is '{}', expected a folder", folder.display())));
     }
-    let Some(file) = shapes else { return Ok(Drawing::default()) };
+    let Some(file) = shapes else {
+        without_effect(meshes != Meshes::Visual, "meshes", "shapes")?;
+        without_effect(mesh_root.is_some(), "mesh_root", "shapes")?;
+        return Ok(Drawing::default());
+    };
     let xacro = XacroArguments::default();
     let drawing = Drawing::of_file_below(&file.to_string_lossy(), &xacro, meshes, mesh_root.as_deref())
         .map_err(|error| of_loader(py, error))?;
@@ -156,6 +168,10 @@ impl PyModel {
         rows: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = &self.robot().model;
+        if trajectory.is_none() {
+            without_effect(title != "simulated", "title", "trajectory")?;
+            without_effect(rows != Some(mozzi_report::ROWS), "rows", "trajectory")?;
+        }
         let drawing = drawing(py, shapes, meshes, mesh_root)?;
         let motion = trajectory.map(|given| self::trajectory(model, given)).transpose()?;
         let all_rows = motion.as_ref().map_or(0, Trajectory::len);
