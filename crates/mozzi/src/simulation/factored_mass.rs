@@ -18,6 +18,13 @@ pub(super) struct FactoredMass<'m> {
     scale: Vec<f64>,
 }
 
+/// Where a vector of n numbers is not 0, from the last to the first.
+#[derive(Default)]
+pub(super) struct Support {
+    pub places: Vec<usize>,
+    is_in: Vec<bool>,
+}
+
 impl<'m> FactoredMass<'m> {
     pub fn new(model: &'m Model) -> Self {
         let (n, workspace) = (model.n(), Workspace::new(model));
@@ -46,18 +53,20 @@ impl<'m> FactoredMass<'m> {
         ldlt::solve(&self.model.structure.pattern, &self.M, x);
     }
 
-    /// y ← D^{−½}L⁻ᵀy, so that yᵀz is that of M⁻¹. Returns where it is not 0: where y was not, and the ancestors there.
-    pub fn halve(&self, y: &mut [f64]) -> Vec<usize> {
-        let (n, pattern) = (self.model.n(), &self.model.structure.pattern);
-        let mut is_in = vec![false; n];
-        let mut support = Vec::with_capacity(n);
+    /// y ← D^{−½}L⁻ᵀy, so that yᵀz is that of M⁻¹. The support is where it is not 0: where y was not, and the ancestors
+    /// there.
+    pub fn halve(&self, y: &mut [f64], Support { places, is_in }: &mut Support) {
+        let pattern = &self.model.structure.pattern;
+        places.clear();
+        is_in.clear();
+        is_in.resize(y.len(), false);
         for (k, _) in y.iter().enumerate().filter(|(_, y)| **y != 0.0) {
-            support.extend(core::iter::once(k).chain(pattern.ancestors(k)).take_while(|&i| !is_in[i]));
-            support.iter().for_each(|&i| is_in[i] = true);
+            let known = places.len();
+            places.extend(core::iter::once(k).chain(pattern.ancestors(k)).take_while(|&i| !is_in[i]));
+            places[known..].iter().for_each(|&i| is_in[i] = true);
         }
-        support.sort_unstable_by(|a, b| b.cmp(a));
-        ldlt::solve_transposed(pattern, &self.M, y, support.iter().copied());
-        support.iter().for_each(|&k| y[k] *= self.scale[k]);
-        support
+        places.sort_unstable_by(|a, b| b.cmp(a));
+        ldlt::solve_transposed(pattern, &self.M, y, places.iter().copied());
+        places.iter().for_each(|&k| y[k] *= self.scale[k]);
     }
 }

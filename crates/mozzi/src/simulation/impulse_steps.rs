@@ -134,7 +134,7 @@ impl Course<'_> {
         let (model, start) = (driven.model, motion.clone());
         let mut theta = start.theta.clone();
         integrate(model, &mut theta, &start.dtheta, 0.5 * h);
-        let system = impulses.system(start.t + 0.5 * h, &theta, h, &vec![0.0; model.n()], Choice::Near(&[]))?;
+        let mut system = impulses.system(start.t + 0.5 * h, &theta, h, &vec![0.0; model.n()], Choice::Near(&[]))?;
         let before = impulses.relative_at(&system, start.t, &start.theta, &start.dtheta);
         let mut p = impulses.guess(&system, h);
         for round in 1..=ROUNDS {
@@ -153,7 +153,7 @@ impl Course<'_> {
                 Integrator::DormandPrince(_) | Integrator::MoreauJean(_) => {}
             }
             let b = impulses.relative_at(&system, end, &motion.theta, &motion.dtheta) - &system.G * &p;
-            let solved = impulses.solve(&system, b, &before, &p);
+            let solved = impulses.solve(&mut system, b, &before, &p);
             let change = &solved.p - &p;
             let size = if change.is_empty() { 0.0 } else { (&system.G * &change).amax() };
             impulses.apply(&system, &change, &mut motion.dtheta);

@@ -153,7 +153,7 @@ impl<'r> Modes<'r> {
         for (point, plane, touch) in self.impulses.touches(t, theta) {
             found.push(if is_active(Key::Contact(point, plane)) { 1.0 } else { touch.gap });
         }
-        for (k, side) in self.impulses.sides() {
+        for &(k, side) in self.impulses.sides() {
             found.push(if is_active(Key::Stop(k, side)) { 1.0 } else { self.impulses.room(theta, k, side) });
         }
         let distances = found.len();
@@ -337,7 +337,7 @@ impl Modes<'_> {
     /// The impulses of contacts and stops that close.
     fn strike(&mut self, state: &mut State) -> Result<(), Error> {
         let dry = self.impulses.dry.clone();
-        let system = self.impulses.system(state.t, &state.theta, 1.0, &[], Choice::Near(&dry))?;
+        let mut system = self.impulses.system(state.t, &state.theta, 1.0, &[], Choice::Near(&dry))?;
         let u = self.impulses.relative_at(&system, state.t, &state.theta, &state.dtheta);
         let closes = system
             .rows
@@ -346,7 +346,7 @@ impl Modes<'_> {
         if !closes {
             return Ok(());
         }
-        let solved = self.impulses.solve(&system, u.clone(), &u, &DVector::zeros(u.len()));
+        let solved = self.impulses.solve(&mut system, u.clone(), &u, &DVector::zeros(u.len()));
         self.impulses.account.keep(solved.residual, u.len());
         self.impulses.apply(&system, &solved.p, &mut state.dtheta);
         let [lost, given] = solved.works(&system, &u);

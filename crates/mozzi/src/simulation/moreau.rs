@@ -156,7 +156,7 @@ impl Moreau {
         straight(model, &mut theta, &state.dtheta, 0.5 * h);
         let v = turned(model, &state.dtheta, &state.dtheta, -0.5 * h); // in the axes of the middle
         let diagonal: Vec<f64> = (0..n).map(|j| 0.5 * h * damping[j] + 0.25 * h * h * stiffness[j]).collect();
-        let system = impulses.system(middle, &theta, h, &diagonal, Choice::Near(sliding))?;
+        let mut system = impulses.system(middle, &theta, h, &diagonal, Choice::Near(sliding))?;
         let before = impulses.relative_at(&system, state.t, &state.theta, &state.dtheta);
         let mut p = impulses.guess(&system, h);
         let (mut v_m, mut force) = (v.clone(), vec![0.0; n]);
@@ -175,7 +175,8 @@ impl Moreau {
                 end_of(model, state, &v, &after, h, &mut to);
                 let differs = impulses.relative_at(&system, end, &to.theta, &to.dtheta) - system.relative(&after);
                 add(&v, &force, &mut after);
-                let found = impulses.solve(&system, system.relative(&after) + differs, &before, &p);
+                let b = system.relative(&after) + differs;
+                let found = impulses.solve(&mut system, b, &before, &p);
                 impulses.apply(&system, &found.p, &mut after);
                 p.copy_from(&found.p);
                 solved = Some(found);

@@ -18,7 +18,7 @@ use crate::one_sided::{Law, Problem, solve};
 use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// The residual that is sought, relative to 1 + |b|.
 const TOLERANCE: f64 = 1e-12;
@@ -44,8 +44,8 @@ pub(super) struct Impulses<'r> {
     pub reach: f64,
     /// Slower impacts do not rebound, m/s.
     pub slowest: f64,
-    /// The forces of the last step.
-    warm: BTreeMap<Key, [f64; 3]>,
+    /// The forces of the last step, in the order of their keys.
+    warm: Vec<(Key, [f64; 3])>,
     /// Where sticking contact points touch: in the coordinates of the plane.
     anchors: BTreeMap<(usize, usize), Vec3>,
     /// The contacts and stops that carried in the last step, and whether they stick.
@@ -129,7 +129,7 @@ impl<'r> Impulses<'r> {
             frames,
             reach: (g * h * h).max(NEAR),
             slowest: 0.0,
-            warm: BTreeMap::new(),
+            warm: Vec::new(),
             anchors: BTreeMap::new(),
             carrying: Vec::new(),
             struck: Vec::new(),
@@ -150,8 +150,8 @@ impl<'r> Impulses<'r> {
     pub fn guess(&self, system: &System, h: f64) -> DVector<f64> {
         let mut p = DVector::zeros(system.laws.iter().map(|law| law.rows()).sum());
         for &(key, first, law) in &system.rows {
-            if let Some(force) = self.warm.get(&key) {
-                (0..law.rows()).for_each(|k| p[first + k] = h * force[k]);
+            if let Ok(known) = self.warm.binary_search_by_key(&key, |(key, _)| *key) {
+                (0..law.rows()).for_each(|k| p[first + k] = h * self.warm[known].1[k]);
             }
         }
         p
@@ -160,7 +160,7 @@ impl<'r> Impulses<'r> {
     /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
     pub fn solve(
         &mut self,
-        system: &System,
+        system: &mut System,
         mut b: DVector<f64>,
         before: &DVector<f64>,
         guess: &DVector<f64>,
@@ -177,12 +177,13 @@ impl<'r> Impulses<'r> {
             }
         }
         let tolerance = TOLERANCE * (1.0 + b.amax());
-        let mut problem = Problem { G: system.G.clone(), b, laws: system.laws.clone() };
+        let G = core::mem::replace(&mut system.G, DMatrix::zeros(0, 0));
+        let mut problem = Problem { G, b, laws: core::mem::take(&mut system.laws) };
         let mut found = solve(&problem, guess, tolerance);
         self.account.add(&found);
         let mut shifted = vec![false; system.rows.len()];
         for _ in 0..SHIFTS {
-            let u = &system.G * &found.p + &original;
+            let u = &problem.G * &found.p + &original;
             let mut changes = false;
             for (row, &(_, first, law)) in system.rows.iter().enumerate() {
                 if !shifted[row] && is_at_middle(law, first, &found.p, before, &u) {
@@ -198,7 +199,8 @@ impl<'r> Impulses<'r> {
             found = solve(&problem, &found.p, tolerance);
             self.account.add(&found);
         }
-        let u = &system.G * &found.p + original;
+        let u = &problem.G * &found.p + original;
+        (system.G, system.laws) = (problem.G, problem.laws);
         Solved { p: found.p, u, residual: found.residual }
     }
 
@@ -211,7 +213,7 @@ impl<'r> Impulses<'r> {
         for &(key, first, law) in &system.rows {
             let mut force = [0.0; 3];
             (0..law.rows()).for_each(|k| force[k] = solved.p[first + k] / h);
-            self.warm.insert(key, force);
+            self.warm.push((key, force));
             if force[0] > 0.0 && matches!(key, Key::Contact(..) | Key::Stop(..)) {
                 self.carrying.push((key, solved.sticks(system, first, law)));
                 if let (Key::Stop(k, side), true) = (key, carried.iter().all(|&(other, _)| other != key)) {
@@ -219,6 +221,7 @@ impl<'r> Impulses<'r> {
                 }
             }
         }
+        self.warm.sort_unstable_by_key(|(key, _)| *key);
         self.set_forces(system, &(&solved.p / h));
     }
 

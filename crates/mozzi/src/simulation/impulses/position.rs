@@ -8,7 +8,6 @@ use crate::linalg::Vec3;
 use crate::model::{Error, FrameId};
 use crate::one_sided::least_squares;
 use crate::simulation::contact::{PlaneMotion, Support, Touch};
-use crate::spatial::Twist;
 use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -100,7 +99,7 @@ impl Impulses<'_> {
 
     /// These rows of velocities.
     fn jacobian(&self, theta: &[f64], open: Vec<OpenRow>) -> DMatrix<f64> {
-        let mut columns = (None, vec![Twist::zero(); self.model.n()]);
+        let mut columns = (None, Vec::new());
         let row = |open: OpenRow| match open {
             OpenRow::Constraint(row) => row,
             OpenRow::Stop(k, side) => self.stop_row(theta, k, side),

@@ -7,10 +7,11 @@ use crate::linalg::Vec3;
 use crate::model::{Error, FrameId, Freedom};
 use crate::one_sided::Law;
 use crate::simulation::contact::Touch;
+use crate::simulation::factored_mass::Support;
 use crate::spatial::Twist;
 use alloc::vec;
 use alloc::vec::Vec;
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
 
 /// What a block of rows belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,7 +63,7 @@ pub(in crate::simulation) struct System {
 impl System {
     /// The velocities of the surroundings as seen from the robot.
     pub fn relative(&self, dtheta: &[f64]) -> DVector<f64> {
-        &self.w - &self.J * DVector::from_column_slice(dtheta)
+        &self.w - &self.J * DVectorView::from_slice(dtheta, dtheta.len())
     }
 }
 
@@ -72,7 +73,7 @@ impl Impulses<'_> {
     pub fn relative_at(&mut self, system: &System, t: f64, theta: &[f64], dtheta: &[f64]) -> DVector<f64> {
         let (model, n, m) = (self.model, self.model.n(), self.model.constraint_rows());
         let mut u = DVector::zeros(system.w.len());
-        let mut columns = (None, vec![Twist::zero(); n]);
+        let mut columns = (None, Vec::new());
         let surfaces = self.surfaces(t);
         if m > 0 {
             let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
@@ -108,50 +109,50 @@ impl Impulses<'_> {
     /// The rows at (t, θ) of a step of h seconds, with `diagonal` added to the diagonal of M, which stays factored.
     pub fn system(&mut self, t: f64, theta: &[f64], h: f64, diagonal: &[f64], choice: Choice) -> Result<System, Error> {
         let (model, n) = (self.model, self.model.n());
-        let mut rows: Vec<RowDVector<f64>> = Vec::new();
-        let (mut w, mut blocks, mut all_axes) = (Vec::new(), Vec::new(), Vec::new());
         let m = model.constraint_rows();
+        let expected = m + self.dry.len();
+        let mut rows: Vec<f64> = Vec::with_capacity(expected * n);
+        let (mut w, mut blocks, mut all_axes) =
+            (Vec::with_capacity(expected), Vec::with_capacity(expected), Vec::new());
         if m > 0 {
             let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
             constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut []);
             for (r, row) in A.chunks_exact(n).enumerate() {
-                blocks.push((Key::Constraint(r), rows.len(), Law::Bilateral));
-                rows.push(RowDVector::from_row_slice(row));
+                blocks.push((Key::Constraint(r), w.len(), Law::Bilateral));
+                rows.extend_from_slice(row);
                 w.push(0.0);
             }
         }
-        for (k, side) in self.sides() {
+        for &(k, side) in self.sides() {
             if !choice.has(Key::Stop(k, side), self.room(theta, k, side) <= super::NEAR) {
                 continue;
             }
-            blocks.push((Key::Stop(k, side), rows.len(), Law::Stop));
-            rows.push(self.stop_row(theta, k, side));
+            blocks.push((Key::Stop(k, side), w.len(), Law::Stop));
+            rows.extend(self.stop_row(theta, k, side).iter());
             w.push(0.0);
         }
         for &j in self.dry.iter().filter(|&&j| choice.has(Key::Dry(j), true)) {
-            blocks.push((Key::Dry(j), rows.len(), Law::Dry { most: h * model.friction[j] }));
-            let mut row = RowDVector::zeros(n);
-            row[j] = 1.0;
-            rows.push(row);
+            blocks.push((Key::Dry(j), w.len(), Law::Dry { most: h * model.friction[j] }));
+            rows.extend((0..n).map(|k| if k == j { 1.0 } else { 0.0 }));
             w.push(0.0);
         }
-        let mut columns = (None, vec![Twist::zero(); n]);
+        let mut columns = (None, Vec::new());
         for (point, plane, touch) in self.touches(t, theta) {
             let key = Key::Contact(point, plane);
             if !choice.has(key, touch.gap <= self.reach) {
                 continue;
             }
             let of = &self.contacts.points[point];
-            blocks.push((key, rows.len(), Law::Contact { mu: of.mu }));
+            blocks.push((key, w.len(), Law::Contact { mu: of.mu }));
             self.columns(theta, of.frame, &mut columns);
             for k in 0..3 {
-                rows.push(point_row(&columns.1, &touch, touch.axes[k]));
+                rows.extend(point_row(&columns.1, &touch, touch.axes[k]).iter());
                 w.push(touch.speeds[k]);
             }
             all_axes.push((key, touch.axes));
         }
         self.mass.factor(theta, 1.0, diagonal)?;
-        let J = if rows.is_empty() { DMatrix::zeros(0, n) } else { DMatrix::from_rows(&rows) };
+        let J = DMatrix::from_row_slice(w.len(), n, &rows);
         let G = self.delassus(&J);
         let laws = blocks.iter().map(|&(_, _, law)| law).collect();
         Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, axes: all_axes })
@@ -161,17 +162,21 @@ impl Impulses<'_> {
     pub fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
         let (n, m) = (self.model.n(), J.nrows());
         let (mut Y, mut G) = (J.transpose(), DMatrix::zeros(m, m));
-        let mut sparse: Vec<Vec<(usize, f64)>> = Vec::with_capacity(m);
+        // what is not 0, of one row after the other, and where each ends
+        let (mut entries, mut ends) = (Vec::with_capacity(m * n), Vec::with_capacity(m + 1));
+        let mut support = Support::default();
+        ends.push(0);
         for a in 0..m {
             let (before, rest) = Y.as_mut_slice().split_at_mut(a * n);
             let y = &mut rest[..n];
-            let support = self.mass.halve(y);
-            sparse.push(support.into_iter().map(|k| (k, y[k])).collect());
+            self.mass.halve(y, &mut support);
+            entries.extend(support.places.iter().map(|&k| (k, y[k])));
+            ends.push(entries.len());
+            let sparse = |b: usize| &entries[ends[b]..ends[b + 1]];
             for b in 0..=a {
                 let dense = if b < a { &before[b * n..][..n] } else { &*y };
-                let (few, all) =
-                    if sparse[b].len() < sparse[a].len() { (&sparse[b], &*y) } else { (&sparse[a], dense) };
-                let product = few.iter().map(|&(k, y)| y * all[k]).sum();
+                let (few, all) = if sparse(b).len() < sparse(a).len() { (sparse(b), &*y) } else { (sparse(a), dense) };
+                let product: f64 = few.iter().map(|&(k, y)| y * all[k]).sum();
                 (G[(a, b)], G[(b, a)]) = (product, product);
             }
         }
@@ -192,14 +197,15 @@ impl Impulses<'_> {
     /// The body Jacobian of a frame, unless the columns are already its.
     pub(super) fn columns(&self, theta: &[f64], frame: FrameId, (of, columns): &mut (Option<FrameId>, Vec<Twist>)) {
         if *of != Some(frame) {
+            columns.resize(self.model.n(), Twist::zero());
             body_jacobian(self.model, theta, frame, columns);
             *of = Some(frame);
         }
     }
 
     /// The limits that act as stops.
-    pub fn sides(&self) -> Vec<(usize, usize)> {
-        self.stops.as_ref().map_or(Vec::new(), |(_, sides)| sides.clone())
+    pub fn sides(&self) -> &[(usize, usize)] {
+        self.stops.as_ref().map_or(&[], |(_, sides)| sides)
     }
 
     /// How far joint k is from its limit.
