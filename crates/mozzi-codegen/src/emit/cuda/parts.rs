@@ -151,7 +151,7 @@ mod tests {
     fn chain(length: usize) -> Program {
         crate::record("chain", &[("x", 2)], |x| {
             let (sin, cos) = x[0][0].sin_cos();
-            let last = (0..length).fold(x[0][1].clone(), |sum, _| sum * sin.clone() + cos.clone());
+            let last = (0..length).fold(x[0][1], |sum, _| sum * sin + cos);
             vec![("y", vec![last])]
         })
     }
@@ -184,8 +184,8 @@ mod tests {
     #[test]
     fn many_numbers_are_not_kept() {
         let program = crate::record("wide", &[("x", 300)], |x| {
-            let squares: Vec<_> = x[0].iter().map(|x| x.clone() * x.clone()).collect();
-            let sums = (0..40).map(|k| squares.iter().fold(x[0][k].clone(), |sum, x| sum * x.clone()));
+            let squares: Vec<_> = x[0].iter().map(|x| *x * *x).collect();
+            let sums = (0..40).map(|k| squares.iter().fold(x[0][k], |sum, x| sum * *x));
             vec![("y", sums.collect())]
         });
         assert!(is_long(&program) && parts(&program).is_none());
