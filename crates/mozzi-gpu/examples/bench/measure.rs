@@ -16,8 +16,8 @@ const CHECKED: usize = 500;
 /// Different random states; the rest repeats them.
 const RANDOM: usize = 4096;
 
-/// The number of states is a multiple of this if fewer fit than asked for: columns that begin within a sector of memory
-/// take twice as long.
+/// If fewer states fit than asked for, their number is a multiple of this: a column that begins within a 32-byte sector
+/// of memory takes twice as long.
 const MULTIPLE: usize = 1024;
 /// Bytes of all arrays, at most: a humanoid's matrices would not fit.
 const BYTES: usize = 1 << 30;

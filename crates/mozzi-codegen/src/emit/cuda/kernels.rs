@@ -10,7 +10,7 @@
 use super::super::body;
 use super::super::dialect::{Argument, Emitted, Source};
 use super::parts::{self, Part, parts};
-use super::staging::{Block, Staging, plan};
+use super::staging::{BY_COLUMNS, Block, Staging, plan};
 use super::{Cuda, NONE};
 use crate::program::Value;
 
@@ -64,7 +64,7 @@ pub(super) fn put(cuda: &Cuda) -> Vec<String> {
 
 /// The copies of rows to and from shared memory that the kernels call.
 pub(super) fn copies(source: &Source, cuda: &Cuda) -> Vec<String> {
-    let plans = source.functions.iter().map(|function| plan(function.program, CudaLayout::Rows, source.precision).1);
+    let plans = source.functions.iter().map(|function| plan(function.program, source.precision).1);
     let all: Vec<Staging> = plans.flatten().collect();
     if all.iter().all(|staging| *staging == Staging::InPlace) {
         return Vec::new();
@@ -111,7 +111,7 @@ fn parameters(function: &Emitted, cuda: &Cuda) -> String {
 pub(super) fn lines(function: &Emitted, cuda: &Cuda) -> Vec<String> {
     let name = format!("{}_{}", cuda.prefix, function.name);
     let arguments = parameters(function, cuda);
-    let (block, staging) = plan(function.program, CudaLayout::Rows, cuda.c.0);
+    let (block, staging) = plan(function.program, cuda.c.0);
     let outputs = function.outputs.iter().zip(&staging[function.inputs.len()..]);
     let slots = outputs.filter_map(|(output, staging)| match staging {
         Staging::Slots(slots) => Some((output.name.clone(), slots.clone())),
@@ -156,7 +156,7 @@ fn columns(
     head: impl Fn(CudaLayout, usize) -> String,
     lines: &mut Vec<String>,
 ) {
-    let Block { threads, states, .. } = Block::of(function.program, CudaLayout::Columns, cuda.c.0);
+    let (threads, states) = (BY_COLUMNS, parts::STATES);
     let arrays: String = arrays(function).map(|argument| format!("{} + i, ", argument.name)).collect();
     lines.push("\n#ifndef MOZZI_ONLY_ROWS".to_string());
     let parts = parts(function.program);

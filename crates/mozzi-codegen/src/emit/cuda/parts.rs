@@ -1,8 +1,8 @@
 //! Long programs in parts.
 //!
-//! A multiprocessor keeps 128 KiB of instructions, 8192 of them. Warps that go through more load all of them from
-//! memory, one line after the other, and wait for four of five cycles. So a long program is cut into parts that
-//! fit. A thread goes through a part for several states before it begins the next, and keeps the few numbers that
+//! The cache of a multiprocessor holds 128 KiB of instructions, 8192 of them. Warps that go through more load all of
+//! them from memory, one line after the other, and wait for four of five cycles. So a long program is cut into parts
+//! that fit. A thread goes through a part for several states before it begins the next, and keeps the few numbers that
 //! later parts need in its local memory.
 
 use super::super::body;
@@ -14,8 +14,8 @@ use std::ops::Range;
 /// States of a thread for which a part is computed before the next part.
 pub(super) const STATES: usize = 16;
 
-/// Instructions that a multiprocessor keeps.
-const KEPT: usize = 8192;
+/// Instructions that a multiprocessor's cache holds.
+const CACHE: usize = 8192;
 /// Instructions of a part, about: a cut may lie where few numbers are kept.
 const LENGTH: usize = 5000;
 /// Numbers of a state kept for later parts, at most: more take longer to store and load than the instructions.
@@ -33,14 +33,14 @@ pub(super) struct Part {
 
 /// Whether the code is about as long as what a multiprocessor keeps, or longer.
 pub(super) fn is_long(program: &Program) -> bool {
-    4 * instructions(program).iter().sum::<usize>() > 3 * KEPT
+    4 * instructions(program).iter().sum::<usize>() > 3 * CACHE
 }
 
 /// The parts of a long program, and the numbers kept for a state; none if the program is short, or has to keep many.
 pub(super) fn parts(program: &Program) -> Option<(Vec<Part>, usize)> {
     let instructions = instructions(program);
     let all: usize = instructions.iter().sum();
-    if all <= KEPT {
+    if all <= CACHE {
         return None;
     }
     let values = values(program);

@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 /// Shared memory that a kernel may have without asking the driver for more.
 const SHARED_BYTES: usize = 48 * 1024;
 
+/// Threads of a block by columns, few: the next block begins when all warps of one have ended.
+pub(super) const BY_COLUMNS: usize = 64;
+
 /// The block of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Block {
@@ -23,7 +26,13 @@ pub struct Block {
 impl Block {
     /// The block of a program's kernel.
     pub fn of(program: &Program, layout: CudaLayout, precision: Precision) -> Block {
-        plan(program, layout, precision).0
+        match layout {
+            CudaLayout::Rows => plan(program, precision).0,
+            CudaLayout::Columns => {
+                let states = if parts(program).is_some() { parts::STATES } else { 1 };
+                Block { threads: BY_COLUMNS, shared_bytes: 0, states }
+            }
+        }
     }
 }
 
@@ -84,23 +93,20 @@ fn padded(length: usize) -> usize {
     length | 1
 }
 
-/// The block, and the staging of each input, then of each output. Rows that do not fit into shared memory with 32
-/// threads get slots if they are results, and are read and written in place if that is not enough, the longest first.
-pub(super) fn plan(program: &Program, layout: CudaLayout, precision: Precision) -> (Block, Vec<Staging>) {
+/// By rows: the block, and the staging of each input, then of each output. Rows that do not fit into shared memory with
+/// 32 threads get slots if they are results, and are read and written in place if that is not enough, the
+/// longest first.
+pub(super) fn plan(program: &Program, precision: Precision) -> (Block, Vec<Staging>) {
     let is_read = |k: usize| program.steps.iter().any(|step| matches!(step, Step::Input(a, _) if *a as usize == k));
     let inputs = program.inputs.iter().enumerate().map(|(k, x)| if is_read(k) { x.length } else { 0 });
     let lengths: Vec<usize> = inputs.chain(program.outputs.iter().map(|output| output.values.len())).collect();
-    let whole = |&n: &usize| if layout == CudaLayout::Rows && n > 1 { Staging::Whole } else { Staging::InPlace };
+    let whole = |&n: &usize| if n > 1 { Staging::Whole } else { Staging::InPlace };
     let mut staging: Vec<Staging> = lengths.iter().map(whole).collect();
-    let is_in_parts = layout == CudaLayout::Columns && parts(program).is_some();
-    let states = if is_in_parts { parts::STATES } else { 1 };
     let block = |staging: &[Staging]| {
         let row = staging.iter().zip(&lengths).map(|(staging, &n)| staging.width(n)).sum::<usize>();
         let of_thread = row * if precision.is_f64() { 8 } else { 4 };
-        // without shared memory small blocks: the next begins when all warps of one have ended
-        let sizes: &[usize] = if layout == CudaLayout::Rows { &[128, 64, 32] } else { &[64] };
-        let threads = sizes.iter().copied().find(|threads| threads * of_thread <= SHARED_BYTES);
-        threads.map(|threads| Block { threads, shared_bytes: threads * of_thread, states })
+        let threads = [128, 64, 32].into_iter().find(|threads| threads * of_thread <= SHARED_BYTES);
+        threads.map(|threads| Block { threads, shared_bytes: threads * of_thread, states: 1 })
     };
     if block(&staging).is_none() {
         for (staging, output) in staging[program.inputs.len()..].iter_mut().zip(&program.outputs) {
