@@ -41,7 +41,8 @@ fn archive(workspace: &Workspace, architecture: &str) -> Result<Outcome, String>
     let stage = workspace.fresh_folder(&format!("{FOLDER}/{name}"))?;
     let mut configure = tool(workspace, "cmake")?;
     configure.arg("-S").arg(&workspace.root).arg("-B").arg(&build);
-    configure.args(["-DMOZZI_CARGO_BUILD=zigbuild", "-DMOZZI_BUILD_EXAMPLES=OFF", "-DCMAKE_INSTALL_LIBDIR=lib"]);
+    configure.args(["-DMOZZI_CARGO_BUILD=zigbuild", "-DMOZZI_CARGO_PROFILE=library"]);
+    configure.args(["-DMOZZI_BUILD_EXAMPLES=OFF", "-DCMAKE_INSTALL_LIBDIR=lib"]);
     configure.arg(format!("-DMOZZI_CARGO_TARGET={triple}.2.{GLIBC}"));
     command::run(configure.arg(format!("-DMOZZI_CARGO_FOLDER={}", cargo.display())))?;
     command::run(tool(workspace, "cmake")?.arg("--build").arg(&build))?;

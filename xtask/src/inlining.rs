@@ -12,10 +12,14 @@ use std::process::{Command, Stdio};
 const MAY: [&str; 6] =
     ["::new", "::zero", "mozzi_batch::lanes::", "std_detect::", "compiler_builtins::", "core::core_arch::"];
 
-/// Reads the disassembly of the release build of `mozzi`, which is there already.
+/// Reads the disassembly of the release build of `mozzi`, which is there already: only linked once more, with names.
 pub fn check(workspace: &Workspace) -> Outcome {
     if !cfg!(all(target_arch = "x86_64", target_os = "linux")) {
         return Outcome::Skipped("only on x86-64 Linux".into());
+    }
+    let link = ["rustc", "--quiet", "--release", "--package", "mozzi-cli", "--bin", "mozzi", "--", "-Cstrip=none"];
+    if let Err(why) = command::run(workspace.cargo(&link)) {
+        return Outcome::Failed(why);
     }
     let mut objdump = Command::new("objdump");
     objdump.args(["--disassemble", "--demangle", "--no-show-raw-insn"]).arg(workspace.target().join("release/mozzi"));

@@ -1,5 +1,5 @@
-//! `cargo xtask test | check | docs | book | page | bench | accuracy | gpu-report | gpu-bench | nightly | wheel | api |
-//! release | dist | deb | licences`: the same commands as in CI.
+//! `cargo xtask test | check | docs | book | page | bench | accuracy | gpu-report | gpu-bench | nightly | wheel |
+//! weigh | api | release | dist | deb | licences`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -9,6 +9,7 @@ mod advisories;
 mod bench;
 mod book;
 mod command;
+mod cpu;
 mod cross;
 mod deb;
 mod dist;
@@ -38,6 +39,7 @@ mod tests;
 mod third_party;
 mod venv;
 mod wasm;
+mod weigh;
 mod wheel;
 mod workspace;
 mod zig;
@@ -89,6 +91,8 @@ usage: cargo xtask COMMAND
           --sdist                                     also the source distribution, twice; build the wheel from it elsewhere,
                                                       without a network: both wheels must be the same file
           --of-tests                                  package the build of `test`, as `test` does it
+  weigh   CPU seconds of the main job's cold build by package, sizes of what is published, into docs/weight.md
+          --main-job                                  the main job alone, to standard output
   api     list the public items of the published crates in docs/api; `check` compares
   release --dry-run VERSION: version, changelog, metadata, features, public items; packages every crate that is published,
           and builds and runs their documentation's examples, a first program and the command line from the packages alone
@@ -101,6 +105,9 @@ usage: cargo xtask COMMAND
 const EXTRAS: [(&str, &str); 1] = [("--torch", venv::TORCH)];
 
 fn main() -> ExitCode {
+    if let Some(log) = std::env::var_os(weigh::LOG) {
+        return weigh::wrapped(log.as_ref());
+    }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let workspace = Workspace::find();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
@@ -125,6 +132,8 @@ fn main() -> ExitCode {
         ["nightly", "--seconds", seconds] if seconds.parse::<u32>().is_ok() => {
             nightly::run(&workspace, seconds.parse().unwrap_or(nightly::SECONDS))
         }
+        ["weigh"] => one("weight", || weigh::run(&workspace, false)),
+        ["weigh", "--main-job"] => one("weight", || weigh::run(&workspace, true)),
         ["wheel", "--of-tests"] => one("wheel", || wheel::test(&workspace)),
         ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
@@ -152,6 +161,7 @@ fn main() -> ExitCode {
 fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     let mut report = Report::default();
     let mut count = tests::Count::default();
+    let release = main_job::start_build(workspace); // beside pip and Python's reference numbers, which use one core
     report.step("Python environment", || venv::prepare(workspace));
     for (option, file) in EXTRAS.iter().filter(|(option, _)| options.contains(option)) {
         report.step(option.trim_start_matches('-'), || venv::add(workspace, file));
@@ -159,7 +169,6 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     report.step("reference numbers", || oracles::make(workspace));
     report.step("page", || page::is_current(workspace));
     report.step("tests", || tests::run(workspace, &mut count));
-    let release = main_job::start_build(workspace);
     report.step("Python package", || package::test(workspace, &mut count));
     report.step("wheel", || wheel::test(workspace));
     report.step("fuzzing", || fuzz::run(workspace, None));
@@ -231,7 +240,7 @@ fn check(workspace: &Workspace, which: Check) -> ExitCode {
 /// The steps of `check` that compile the workspace.
 fn builds(workspace: &Workspace, report: &mut Report) {
     report.step("clippy", || {
-        let mut cargo = workspace.cargo(&["clippy", "--workspace", "--all-targets"]);
+        let mut cargo = workspace.cargo(&["clippy", "--workspace", "--lib", "--bins", "--tests", "--examples"]);
         command::outcome(cargo.args(workspace::FEATURES).args(["--", "-D", "warnings"]))
     });
     report.step("documentation", || {

@@ -5,8 +5,7 @@ use crate::report::Outcome;
 use crate::workspace::Workspace;
 use std::process::{Child, Stdio};
 
-/// The build for it, begun early: most steps after the tests use one core. A failure is shown by [`run`], which builds
-/// again what is missing.
+/// The build for it, begun first. A failure is shown by [`run`], which builds again what is missing.
 pub fn start_build(workspace: &Workspace) -> Option<Child> {
     let mut cargo = workspace.cargo(&["build", "--release", "--quiet"]);
     cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()

@@ -1,5 +1,6 @@
 //! The report of the steps: a heading when a step starts, a line in the list at the end.
 
+use crate::cpu::Seconds;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,12 +15,18 @@ pub enum Outcome {
 }
 
 /// The steps of one command, in the order in which they ran.
-#[derive(Default)]
 pub struct Report {
+    start: Instant,
     lines: Vec<String>,
     failed: Vec<String>,
     /// The file to which each line is written as soon as it is known.
     log: Option<PathBuf>,
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Report { start: Instant::now(), lines: Vec::new(), failed: Vec::new(), log: None }
+    }
 }
 
 impl Report {
@@ -34,7 +41,7 @@ impl Report {
 
     pub fn step(&mut self, name: &str, run: impl FnOnce() -> Outcome) {
         println!("\n=== {name} ===");
-        let start = Instant::now();
+        let (start, before) = (Instant::now(), Seconds::of_children());
         let (word, note) = match run() {
             Outcome::Passed(note) => ("passed", note),
             Outcome::Skipped(why) => ("skipped", why),
@@ -43,7 +50,8 @@ impl Report {
                 ("FAILED", why)
             }
         };
-        let mut line = format!("{word:8} {name} [{:.1} s]", start.elapsed().as_secs_f64());
+        let cpu = Seconds::of_children().since(before);
+        let mut line = format!("{word:8} {name} [{:.1} s{cpu}]", start.elapsed().as_secs_f64());
         if !note.is_empty() {
             line += &format!(": {note}");
         }
@@ -62,6 +70,7 @@ impl Report {
         for line in &self.lines {
             println!("{line}");
         }
+        println!("together {:.0} s{}", self.start.elapsed().as_secs_f64(), Seconds::of_children());
         if self.failed.is_empty() {
             return ExitCode::SUCCESS;
         }

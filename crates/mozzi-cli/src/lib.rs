@@ -230,7 +230,7 @@ Files with N states:
                    structured array (N,) with names as in CSV, such as `mozzi simulate` writes
   .npz             arrays theta (N, nq), dtheta, ddtheta, tau, x (N, n), wrench (N, 6) of the tip; also
                    gravity (N, 3), parameters (N, p) and wrench_FRAME (N, 6), different in each state
-  .arrow .feather  Arrow's IPC file (pandas.to_feather, polars.write_ipc) with columns as in CSV
+  .arrow .feather  columns as in CSV (pandas.to_feather, polars.write_ipc), if built with feature arrow
   .csv             columns theta_1 …, see below; wrench_FRAME_m_x … wrench_FRAME_f_z of a frame's wrench
   .parquet         columns as in CSV, if built with this feature and not compressed
 Numbers are float64, float32 or integers. Wrenches given by flags are the same in all states.

@@ -4,8 +4,12 @@ use mozzi_batch::InstructionSet;
 use mozzi_codegen::Shape;
 
 /// The optional formats, and whether this build has them.
-const FEATURES: [(&str, bool); 3] =
-    [("mcap", cfg!(feature = "mcap")), ("parquet", cfg!(feature = "parquet")), ("png", cfg!(feature = "png"))];
+const FEATURES: [(&str, bool); 4] = [
+    ("arrow", cfg!(feature = "arrow")),
+    ("mcap", cfg!(feature = "mcap")),
+    ("parquet", cfg!(feature = "parquet")),
+    ("png", cfg!(feature = "png")),
+];
 
 /// A version, then a line for each of the rest.
 pub fn long() -> String {

@@ -4,10 +4,10 @@ use crate::consequence::Consequence;
 use crate::diagnostic::Diagnostic;
 use crate::error::{LoadError, PRINTED};
 use crate::visible::visible;
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents};
-use miette::{SourceCode, SourceSpan, SpanContents};
+use annotate_snippets::renderer::DecorStyle;
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use mozzi::model::Severity;
-use std::fmt::{self, Write};
+use std::fmt::Write;
 use std::ops::Range;
 
 /// Longer lines are shown only in part.
@@ -25,25 +25,38 @@ pub enum Style {
 }
 
 impl Style {
-    fn handler(self) -> GraphicalReportHandler {
-        let theme = match self {
-            Style::Ascii => GraphicalTheme::none(),
-            Style::Unicode => GraphicalTheme::unicode_nocolor(),
-            Style::Color => GraphicalTheme::unicode(),
+    fn renderer(self) -> Renderer {
+        let (renderer, decor) = match self {
+            Style::Ascii => (Renderer::plain(), DecorStyle::Ascii),
+            Style::Unicode => (Renderer::plain(), DecorStyle::Unicode),
+            Style::Color => (Renderer::styled(), DecorStyle::Unicode),
         };
-        GraphicalReportHandler::new_themed(theme).with_width(120).with_context_lines(1).with_links(false)
+        renderer.decor_style(decor).term_width(120)
     }
 }
 
 impl Diagnostic {
-    /// The rendered report.
+    /// The rendered report, which ends with an empty line.
     pub fn pretty(&self, style: Style) -> String {
-        let mut text = String::new();
-        let view = self.text().map(|text| View::new(self, text));
-        match view.map(|view| style.handler().render_report(&mut text, &view)) {
-            Some(Ok(())) => text,
-            _ => format!("{self}\n"),
-        }
+        let Some(text) = self.text() else { return format!("{self}\n\n") };
+        let level = match self.severity() {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let title = level.primary_title(visible(self.message()) + &visible(self.calls())).id(self.code());
+        let excerpt = Excerpt::of(self, text);
+        let (file, shows_column) = (visible(self.file()), excerpt.column() == self.column());
+        let mark = AnnotationKind::Primary.span(excerpt.marked);
+        let snippet = Snippet::source(excerpt.shown).line_start(excerpt.first_line).fold(false).annotation(mark);
+        let report = match shows_column {
+            true => title.element(snippet.path(file)),
+            false => {
+                let place = Origin::path(file).line(self.line()).char_column(self.column());
+                title.element(place).element(snippet)
+            }
+        };
+        let report = report.elements(self.help().map(|help| Level::HELP.message(visible(help))));
+        style.renderer().render(&[report]) + "\n\n"
     }
 }
 
@@ -66,21 +79,18 @@ impl LoadError {
     }
 }
 
-/// A diagnostic in the form that the report needs.
-struct View<'d> {
-    diagnostic: &'d Diagnostic,
-    /// The shown part of the text, its start in the file, its first line from 0, and the marked range. Places count the
-    /// text before this part as in the file, and this part as shown.
+/// The lines around the place, or a part of a long line.
+struct Excerpt {
     shown: String,
-    start: usize,
+    /// From 1.
     first_line: usize,
+    /// In `shown`.
     marked: Range<usize>,
 }
 
-impl<'d> View<'d> {
-    /// The lines around the place; only part of a long line.
-    fn new(diagnostic: &'d Diagnostic, text: &str) -> Self {
-        let (span, line) = (diagnostic.span(), diagnostic.line() - 1);
+impl Excerpt {
+    fn of(diagnostic: &Diagnostic, text: &str) -> Self {
+        let (span, line) = (diagnostic.span(), diagnostic.line());
         let start_of_line = |at: usize| text[..at].rfind('\n').map_or(0, |k| k + 1);
         let end_of_line = |at: usize| text[at..].find('\n').map_or(text.len(), |k| at + k);
         let (start, end) = (start_of_line(span.start), end_of_line(span.start));
@@ -97,66 +107,14 @@ impl<'d> View<'d> {
         let marked = span.start..span.end.min(shown.end).max(span.start);
         // \r is a part of a line's end
         let part = |range: Range<usize>| visible(&text[range].replace('\r', ""));
-        let begin = shown.start + part(shown.start..marked.start).len();
+        let begin = part(shown.start..marked.start).len();
         let end = begin + part(marked).len();
-        View { diagnostic, marked: begin..end, start: shown.start, shown: part(shown), first_line }
-    }
-}
-
-impl fmt::Display for View<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&visible(self.diagnostic.message()))?;
-        f.write_str(&visible(self.diagnostic.calls()))
-    }
-}
-
-impl fmt::Debug for View<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-impl std::error::Error for View<'_> {}
-
-impl miette::Diagnostic for View<'_> {
-    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(self.diagnostic.code()))
+        Excerpt { marked: begin..end, shown: part(shown), first_line }
     }
 
-    fn severity(&self) -> Option<miette::Severity> {
-        Some(match self.diagnostic.severity() {
-            Severity::Error => miette::Severity::Error,
-            Severity::Warning => miette::Severity::Warning,
-        })
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.diagnostic.help().map(|help| Box::new(visible(help)) as Box<dyn fmt::Display>)
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(self)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, self.marked.clone()))))
-    }
-}
-
-impl SourceCode for View<'_> {
-    fn read_span<'a>(
-        &'a self,
-        _: &SourceSpan,
-        before: usize,
-        _: usize,
-    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        // the report first requests the place itself, with no lines before it, then the text to show
-        let (shown, line, column) = match before {
-            0 => (self.marked.clone(), self.diagnostic.line() - 1, self.diagnostic.column() - 1),
-            _ => (self.start..self.start + self.shown.len(), self.first_line, 0),
-        };
-        let text = &self.shown[shown.start - self.start..shown.end - self.start];
-        let (name, count) = (visible(self.diagnostic.file()), text.lines().count());
-        Ok(Box::new(MietteSpanContents::new_named(name, text.as_bytes(), shown.into(), line, column, count)))
+    /// The column at which the mark begins in what is shown, from 1.
+    fn column(&self) -> usize {
+        let before = &self.shown[..self.marked.start];
+        before[before.rfind('\n').map_or(0, |k| k + 1)..].chars().count() + 1
     }
 }

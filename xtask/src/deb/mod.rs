@@ -98,8 +98,17 @@ fn size(file: &Path) -> Result<u64, String> {
 
 /// Builds the program and copies it; its place among cargo's results.
 fn command_line(workspace: &Workspace, stage: &Path, package: &Package) -> Result<PathBuf, String> {
-    let mut cargo =
-        workspace.cargo(&["zigbuild", "--profile", "dist", "--locked", "--package", "mozzi-cli", "--target"]);
+    let mut cargo = workspace.cargo(&[
+        "zigbuild",
+        "--profile",
+        "dist",
+        "--locked",
+        "--package",
+        "mozzi-cli",
+        "--features",
+        "arrow",
+        "--target",
+    ]);
     cargo.arg(package.target()).arg("--target-dir").arg(workspace.path(dist::CARGO));
     zig::prepare(workspace, &mut cargo)?;
     let commit = std::env::var("MOZZI_COMMIT").ok();
@@ -119,7 +128,8 @@ fn library(workspace: &Workspace, stage: &Path, package: &Package) -> Result<Pat
     let folder = format!("lib/{}", package.multiarch());
     let mut configure = Command::new("cmake");
     configure.arg("-S").arg(&workspace.root).arg("-B").arg(&build);
-    configure.args(["-DMOZZI_BUILD_EXAMPLES=OFF", "-DMOZZI_CARGO_BUILD=zigbuild", "-DCMAKE_INSTALL_PREFIX=/usr"]);
+    configure.args(["-DMOZZI_CARGO_BUILD=zigbuild", "-DMOZZI_CARGO_PROFILE=library"]);
+    configure.args(["-DMOZZI_BUILD_EXAMPLES=OFF", "-DCMAKE_INSTALL_PREFIX=/usr"]);
     configure.arg(format!("-DMOZZI_CARGO_TARGET={}", package.target()));
     configure.arg(format!("-DCMAKE_INSTALL_LIBDIR={folder}"));
     command::run(configure.arg(format!("-DMOZZI_CARGO_FOLDER={}", workspace.path(dist::CARGO).display())))?;

@@ -70,8 +70,11 @@ fn built(workspace: &Workspace, version: &str) -> Result<String, String> {
 pub fn install(workspace: &Workspace, version: &str) -> Outcome {
     let installed = packages::folder(workspace, "install").and_then(|folder| {
         // `cargo install` does not look for configuration where it is called
-        let mut cargo =
-            packages::cargo(workspace, &folder, &["install", "mozzi-cli", "--version", version, "--config"]);
+        let mut cargo = packages::cargo(
+            workspace,
+            &folder,
+            &["install", "mozzi-cli", "--version", version, "--features", "arrow", "--config"],
+        );
         command::run(cargo.arg(".cargo/config.toml").args(["--locked", "--root"]).arg(&folder))?;
         let mozzi = folder.join("bin/mozzi");
         let size = std::fs::metadata(&mozzi).map_err(|error| format!("{}: {error}", mozzi.display()))?.len();

@@ -31,7 +31,6 @@ impl Sources {
 /// Builds a wheel into a folder.
 pub fn build(workspace: &Workspace, sources: &Sources, to: &Path) -> Result<(), String> {
     let mut maturin = command(workspace, "build", &sources.project, to)?;
-    maturin.arg("--release");
     if cfg!(target_os = "linux") {
         maturin.args(["--zig", "--compatibility"]).arg(format!("manylinux_2_{}", zig::GLIBC));
     }

@@ -232,6 +232,7 @@ fn png(svg: &str) -> Result<Vec<u8>> {
 #[cfg(not(feature = "png"))]
 fn png(_svg: &str) -> Result<Vec<u8>> {
     Err(Failure::wrong(
-        "--out ends in .png, but this program was built without PNG: cargo install --features png; .svg works",
+        "--out ends in .png, but this program was built without the feature `png`; .svg works, or build it with: \
+         cargo install --path crates/mozzi-cli --features png",
     ))
 }

@@ -70,7 +70,7 @@ pub struct SimulateArguments {
     #[arg(long)]
     allow_large: bool,
     /// Write the motion to a file, row by row; its ending chooses the format: .csv ("-": standard output), .npy, .npz,
-    /// .arrow, .feather; .parquet and .mcap if built with these features. Columns t, theta_1 … tau_n, energies and
+    /// .arrow, .feather, .parquet and .mcap if built with these features. Columns t, theta_1 … tau_n, energies and
     /// works
     #[arg(long, value_name = "FILE")]
     out: Option<String>,

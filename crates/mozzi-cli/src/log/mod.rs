@@ -1,5 +1,6 @@
 //! A motion as a file, row by row as it is simulated; its ending chooses the format.
 
+#[cfg(feature = "arrow")]
 mod arrow;
 #[cfg(feature = "mcap")]
 mod cdr;
@@ -66,12 +67,13 @@ impl<'m> Log<'m> {
             Format::Csv => Box::new(csv::Csv::new(BufWriter::new(to), &names(model))?),
             Format::Npy => Box::new(npy::Npy::new(to, model, self.expected)?),
             Format::Npz => Box::new(npz::Npz::new(to, &self.file, model)?),
+            #[cfg(feature = "arrow")]
             Format::Arrow => Box::new(arrow::Batches::to_arrow(to, model)?),
             #[cfg(feature = "parquet")]
             Format::Parquet => Box::new(arrow::Batches::to_parquet(to, model)?),
             #[cfg(feature = "mcap")]
             Format::Mcap => Box::new(mcap::Mcap::new(to, model)?),
-            #[cfg(not(all(feature = "parquet", feature = "mcap")))]
+            #[cfg(not(all(feature = "arrow", feature = "parquet", feature = "mcap")))]
             _ => return Err(io::Error::other("this program was built without its format")),
         })
     }

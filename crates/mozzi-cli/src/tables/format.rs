@@ -75,16 +75,24 @@ impl Format {
         let ending = Path::new(file).extension().map(|ending| ending.to_string_lossy().to_lowercase());
         let is_of = |format: &&Format| ending.as_deref().is_some_and(|ending| format.endings().contains(&ending));
         let found = expected.iter().find(is_of).copied();
-        for (needs, is_there, feature) in
-            [(Parquet, cfg!(feature = "parquet"), "parquet"), (Mcap, cfg!(feature = "mcap"), "mcap")]
-        {
-            if found == Some(needs) && !is_there {
-                return Err(Failure::wrong(format!(
-                    "{file}: this program was built without .{feature}: cargo install --path crates/mozzi-cli --features {feature}"
-                )));
-            }
+        match found.and_then(Self::missing) {
+            Some(feature) => Err(Failure::wrong(format!(
+                "{file}: this program was built without the feature `{feature}`; .npz and .csv work, or build it with: \
+                 cargo install --path crates/mozzi-cli --features {feature}"
+            ))),
+            None => Ok(found),
         }
-        Ok(found)
+    }
+
+    /// The feature that this format needs, if this build is without it.
+    fn missing(self) -> Option<&'static str> {
+        let (is_there, feature) = match self {
+            Csv | Npy | Npz => return None,
+            Arrow => (cfg!(feature = "arrow"), "arrow"),
+            Parquet => (cfg!(feature = "parquet"), "parquet"),
+            Mcap => (cfg!(feature = "mcap"), "mcap"),
+        };
+        (!is_there).then_some(feature)
     }
 
     /// The format of a file for the results of this quantity.
@@ -110,11 +118,24 @@ mod tests {
     #[test]
     fn the_name_tells_the_format() {
         let of = |file| Format::of(file, &MOTION).ok();
-        assert_eq!((of("a/b.CSV"), of("-"), of("x.feather")), (Some(Csv), Some(Csv), Some(Arrow)));
-        assert_eq!(
-            (of("x.mcap").is_some(), of("x.parquet").is_some()),
-            (cfg!(feature = "mcap"), cfg!(feature = "parquet"))
-        );
+        assert_eq!((of("a/b.CSV"), of("-"), of("x.npz")), (Some(Csv), Some(Csv), Some(Npz)));
+        for (file, format, is_built, feature) in [
+            ("x.feather", Arrow, cfg!(feature = "arrow"), "arrow"),
+            ("x.mcap", Mcap, cfg!(feature = "mcap"), "mcap"),
+            ("x.parquet", Parquet, cfg!(feature = "parquet"), "parquet"),
+        ] {
+            match Format::of(file, &MOTION) {
+                Ok(found) => assert!(is_built && found == format),
+                Err(Failure::Wrong(said)) => assert!(
+                    !is_built
+                        && said.contains(&format!("{file}: this program was built without the feature `{feature}`"))
+                        && said.contains(".npz and .csv work")
+                        && said.ends_with(&format!("--features {feature}")),
+                    "{said}"
+                ),
+                Err(_) => panic!("{file}: another error"),
+            }
+        }
         let said = |file, among: &[Format]| format!("{:?}", Format::of(file, among).expect_err("unknown"));
         assert!(said("motion.txt", &MOTION).contains("motion.txt: expected a name that ends in .csv, .npy"));
         assert!(said("x.mcap", &RESULT).contains(".csv, .npy, .npz, .arrow, .feather or .ipc"));

@@ -1,6 +1,7 @@
 //! Tables of states and of results in files: .npy, .npz, Arrow, Parquet, CSV.
 
 pub mod array;
+#[cfg(feature = "arrow")]
 pub mod arrow;
 mod bound;
 pub mod format;

@@ -1,8 +1,6 @@
 //! The number types of files.
 
-use arrow_array::{ArrayRef, Float32Array, Float64Array};
 use mozzi_batch::Number;
-use std::sync::Arc;
 
 /// A number type of files, batches and GPUs.
 pub trait Precision: Number + mozzi_gpu::Number {
@@ -10,11 +8,13 @@ pub trait Precision: Number + mozzi_gpu::Number {
     const NAME: &'static str;
 
     fn write(self, bytes: &mut Vec<u8>);
-    fn column(values: Vec<Self>) -> ArrayRef;
+    /// A column of a table.
+    #[cfg(feature = "arrow")]
+    fn column(values: Vec<Self>) -> arrow_array::ArrayRef;
 }
 
 macro_rules! precision {
-    ($T:ty, $name:literal, $Array:ty) => {
+    ($T:ty, $name:literal, $Array:ident) => {
         impl Precision for $T {
             const NAME: &'static str = $name;
 
@@ -22,8 +22,9 @@ macro_rules! precision {
                 bytes.extend(self.to_le_bytes());
             }
 
-            fn column(values: Vec<Self>) -> ArrayRef {
-                Arc::new(<$Array>::from(values))
+            #[cfg(feature = "arrow")]
+            fn column(values: Vec<Self>) -> arrow_array::ArrayRef {
+                std::sync::Arc::new(arrow_array::$Array::from(values))
             }
         }
     };

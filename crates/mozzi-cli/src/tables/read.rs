@@ -3,8 +3,8 @@
 use super::array::{Array, tuple};
 use super::format::Format;
 use super::npy::{self, Header};
+use super::npz;
 use super::samples::Samples;
-use super::{arrow, npz};
 use crate::columns;
 use crate::csv;
 use crate::failure::{Failure, Result};
@@ -47,7 +47,8 @@ fn read_by<'m>(file: &str, choose: Choose<'_, 'm>) -> Result<Samples> {
             ))),
         },
         Format::Npz => arrays(file, choose),
-        Format::Arrow => arrow::read(file, choose),
+        #[cfg(feature = "arrow")]
+        Format::Arrow => super::arrow::read(file, choose),
         #[cfg(feature = "parquet")]
         Format::Parquet => super::parquet::read(file, choose),
         _ => csv::read(file, choose),

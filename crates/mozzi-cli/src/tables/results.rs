@@ -4,7 +4,7 @@ use super::array::Array;
 use super::format::Format;
 use super::precision::Precision;
 use super::states::States;
-use super::{arrow, npy, npz};
+use super::{npy, npz};
 use crate::columns::{Columns, names, save};
 use crate::failure::Result;
 use crate::numbers::WRENCH;
@@ -40,7 +40,8 @@ pub fn write<T: Precision>(
 ) -> Result<String> {
     match Format::of_results(file, query)? {
         Format::Npz => npz::write(file, results)?,
-        Format::Arrow => arrow::write(file, columns(query, model, results))?,
+        #[cfg(feature = "arrow")]
+        Format::Arrow => super::arrow::write(file, columns(query, model, results))?,
         Format::Npy => {
             for array in results {
                 save(file, npy::bytes(array))?;

@@ -1,8 +1,8 @@
 //! `docs/diagnostics.md`: every code, its meaning, its remedy, and an example.
 //!
-//! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf --test reports`, rewrites it.
+//! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf reports`, rewrites it.
 
-use crate::{Broken, folder, models, report, robots};
+use super::{Broken, folder, models, report, robots};
 use mozzi_urdf::{Severity, codes, explain, mjcf, remedy};
 use std::fmt::Write;
 use std::path::Path;
@@ -56,13 +56,32 @@ fn entry(page: &mut String, all: &[Broken], language: &str, code: &str) {
     let (meaning, mend) = (explain(&full).unwrap_or_default(), remedy(&full).unwrap_or_default());
     let _ = writeln!(page, "\n### `{full}`\n\n*{}*. {meaning}\n\n**Remedy**: {mend}.", severity(all, language, code));
     let Some(broken) = example(all, code) else { return };
-    let cut = |line: &str| match line.char_indices().nth(WIDTH) {
-        Some((at, _)) => format!("{}…\n", &line[..at]),
-        None => format!("{line}\n"),
-    };
     let (text, _) = report(broken);
-    let lines: String = text.trim_end().lines().take(LINES).map(cut).collect();
+    let lines: String = text.trim_end().lines().take(LINES).map(shortened).collect();
     let _ = write!(page, "\n```text\n{lines}```\n");
+}
+
+/// Sentences continue in a line of their own, lines of a file are cut.
+fn shortened(line: &str) -> String {
+    let is_sentence =
+        ["error[", "warning[", "help: "].iter().any(|start| line.trim_start_matches([' ', '=']).starts_with(start));
+    if !is_sentence {
+        return match line.char_indices().nth(WIDTH) {
+            Some((at, _)) => format!("{}…\n", &line[..at]),
+            None => format!("{line}\n"),
+        };
+    }
+    let (mut text, mut width) = (String::new(), 0);
+    for word in line.split_inclusive(' ') {
+        if width + word.trim_end().chars().count() > WIDTH {
+            text.truncate(text.trim_end().len());
+            text.push_str("\n    ");
+            width = 4;
+        }
+        text.push_str(word);
+        width += word.chars().count();
+    }
+    text + "\n"
 }
 
 fn page() -> String {

@@ -25,7 +25,8 @@ const PIECE: [Duration; 2] = [Duration::from_millis(40), Duration::from_millis(1
 
 #[derive(Args, Debug)]
 pub struct TableArguments {
-    /// Read states from a file instead of flags: .npy, .npz, .arrow, .feather or .csv ("-": CSV on standard input)
+    /// Read states from a file instead of flags: .npy, .npz or .csv ("-": CSV on standard input); .arrow, .feather and
+    /// .parquet if built with these features
     #[arg(long = "in", value_name = "STATES")]
     pub input: Option<String>,
     /// File for the results, with the same endings [default: CSV on standard output, "-"]

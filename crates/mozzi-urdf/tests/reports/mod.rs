@@ -2,7 +2,7 @@
 //!
 //! `tests/broken/CODE.urdf` and `CODE-variant.urdf` are robots with one error, `CODE.txt` next to them is the report;
 //! likewise the models in `tests/broken/mjcf`. A code without a file fails the test. `MOZZI_BLESS=1 cargo test -p
-//! mozzi-urdf --test reports` rewrites the reports: read them before you commit them.
+//! mozzi-urdf reports` rewrites the reports: read them before you commit them.
 
 mod page;
 
