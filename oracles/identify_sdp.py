@@ -1,6 +1,6 @@
 """Solves the convex problems of identification by cvxpy and Clarabel: the second way for mozzi-identify.
 
-    cargo test -p mozzi-identify --test semidefinite -- --ignored    # writes the problems
+    cargo test -p mozzi-identify semidefinite -- --ignored    # writes the problems
     python oracles/identify_sdp.py                                   # pip install cvxpy clarabel; adds the optima
 
 min |R x - z|^2 + gamma sum (tr W - log det W - 4) + 1e-5 sum (f/s - log(f/s) - 1), with J = C W C^T the pseudo-inertia

@@ -1,8 +1,7 @@
 //! The compiled robot: same results and errors as the model's methods.
 #![allow(missing_docs)]
 
-#[path = "../../mozzi-codegen/tests/common/mod.rs"]
-mod common;
+use crate::common;
 
 use common::{error, inputs, quantities, robots, state, tolerance};
 use mozzi::fast;

@@ -1,8 +1,7 @@
 //! Simulation by machine code, compared with simulation by the kernels.
 #![allow(missing_docs)]
 
-#[path = "../../mozzi-codegen/tests/common/mod.rs"]
-mod common;
+use crate::common;
 
 use common::{error, robots, state};
 use mozzi::quantities::ForwardDynamics;

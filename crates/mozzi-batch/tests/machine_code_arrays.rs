@@ -1,8 +1,7 @@
 //! Many states by machine code, compared with one state by the kernels.
 #![allow(missing_docs)]
 
-#[path = "../../mozzi-codegen/tests/common/mod.rs"]
-mod common;
+use crate::common;
 
 use common::{compute, error, inputs, quantities, robots, state, tolerance};
 use mozzi::Model;

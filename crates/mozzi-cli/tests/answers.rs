@@ -1,7 +1,7 @@
 //! Each subcommand gives a result, in text and in JSON.
 #![allow(non_snake_case)]
 
-mod common;
+use crate::common;
 
 use common::{assert_close, json, mozzi, numbers, rows, text, times};
 

@@ -1,6 +1,6 @@
 //! `mozzi codegen`: files of source text, and operation counts before and after folding.
 
-mod common;
+use crate::common;
 
 use common::{complaint, folder, json, mozzi, text};
 use mozzi::quantities::{Dim, LIST, Uses};

@@ -2,7 +2,7 @@
 //! installed.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, mozzi};
 use serde_json::Value;

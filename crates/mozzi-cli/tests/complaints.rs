@@ -1,6 +1,6 @@
 //! Errors are reported in a sentence with the found and the expected value, and by the exit code.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, mozzi};
 

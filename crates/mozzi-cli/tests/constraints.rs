@@ -1,6 +1,6 @@
 //! `--constraints FILE`, and constraints in a robot's JSON.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, json, mozzi, text};
 use serde_json::Value;

@@ -1,6 +1,6 @@
 //! Round trips: a robot that is written and read again is the same robot.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, rows, text};
 

@@ -1,7 +1,7 @@
 //! Damaged, hostile and endless tables: a result or one sentence, with bounded memory.
 #![cfg(target_os = "linux")]
 
-mod common;
+use crate::common;
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_ipc::CompressionType;

@@ -1,6 +1,6 @@
 //! `--until` and `--report-event`: their times, against Runge-Kutta's steps that end there, and their messages.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, mozzi, numbers, text};
 use mozzi::simulation::{Options, Zero};

@@ -1,6 +1,6 @@
 //! A floating base on the command line: its layout and names; every command accepts it.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, mozzi, numbers, rows, text, times};
 

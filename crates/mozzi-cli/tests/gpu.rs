@@ -1,6 +1,6 @@
 //! `mozzi compute --gpu`: on a GPU the numbers of the cores, without one the reason.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, mozzi, text};
 

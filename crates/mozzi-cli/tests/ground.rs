@@ -1,6 +1,6 @@
 //! `mozzi simulate --ground`, and dry friction that sticks.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, json, rows, text};
 use mozzi::Model;

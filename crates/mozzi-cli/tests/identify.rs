@@ -1,6 +1,6 @@
 //! `mozzi excite` and `mozzi identify`.
 
-mod common;
+use crate::common;
 
 use common::{complaint, folder, json, mozzi, numbers, text};
 use std::path::Path;

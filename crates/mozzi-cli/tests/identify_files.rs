@@ -1,6 +1,6 @@
 //! `mozzi identify` writes the robot in its file's own words, and reads floating robots and bags of rosbag2.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, json, mozzi, text};
 use mozzi::{Environment, Model, Wrench};

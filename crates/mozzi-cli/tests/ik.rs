@@ -1,6 +1,6 @@
 //! `mozzi ik`, against `mozzi terms` and the robot's limits.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, mozzi, numbers, text};
 

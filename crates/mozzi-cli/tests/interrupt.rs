@@ -2,7 +2,7 @@
 //! says so.
 #![cfg(unix)]
 
-mod common;
+use crate::common;
 
 use common::folder;
 use std::io::Write;

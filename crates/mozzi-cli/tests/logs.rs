@@ -1,6 +1,6 @@
 //! A motion in files of each format, read back by the formats' own libraries in Python.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, folder, json, numbers, rows, text};
 use mozzi::Model;

@@ -1,6 +1,6 @@
 //! `mozzi trajectory`, and `mozzi simulate` with its tables: controllers, methods, limits, Ctrl-C.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, numbers, rows, text};
 

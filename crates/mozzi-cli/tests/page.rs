@@ -1,7 +1,7 @@
 //! The page of `--report` and `view` in a real browser: the scene agrees with mozzi's results.
 
-mod browser;
-mod common;
+use crate::browser;
+use crate::common;
 
 use browser::{browser, look, url};
 use common::{folder, json, numbers, rows, text};

@@ -1,8 +1,8 @@
 //! Contacts on the page of `mozzi simulate --ground --report`, in a real browser: what the scene draws agrees with
 //! mozzi's results.
 
-mod browser;
-mod common;
+use crate::browser;
+use crate::common;
 
 use browser::{browser, look, url};
 use common::{file, folder, json, numbers, text};

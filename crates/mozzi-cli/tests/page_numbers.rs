@@ -1,8 +1,8 @@
 //! Every number that the page computes is the library's: its WebAssembly against the library, in a real browser, for
 //! every quantity. An outdated WebAssembly fails here.
 
-mod browser;
-mod common;
+use crate::browser;
+use crate::common;
 
 use browser::{browser, look, url};
 use common::{file, folder, numbers, text};

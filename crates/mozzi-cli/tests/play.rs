@@ -1,8 +1,8 @@
 //! The playground in a real browser: what a visitor does, and its numbers against the library's.
 
 #[allow(dead_code)] // other tests look at reports
-mod browser;
-mod common;
+use crate::browser;
+use crate::common;
 
 use browser::{browser, run, url};
 use common::{folder, json, numbers, text};

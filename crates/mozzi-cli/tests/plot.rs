@@ -1,6 +1,6 @@
 //! Figures: of a table's motion, of methods, of a robot.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, text};
 

@@ -1,6 +1,6 @@
 //! What packages of the program bring along: completions, manual pages, the version.
 
-mod common;
+use crate::common;
 
 use common::{complaint, folder, text};
 use std::process::Command;

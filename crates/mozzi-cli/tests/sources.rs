@@ -1,6 +1,6 @@
 //! Sources of robots and tables: standard input, files named like embedded robots, tables of other programs.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, json, numbers, text};
 use std::io::Write;

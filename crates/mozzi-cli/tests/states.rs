@@ -1,6 +1,6 @@
 //! Named states: listed, used by name, kept in JSON, and the default start.
 
-mod common;
+use crate::common;
 
 use common::{complaint, file, folder, json, mozzi, numbers, text};
 use serde_json::Value;

@@ -1,6 +1,6 @@
 //! Tables in and out, and the tour.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, mozzi, numbers, rows, text};
 use std::io::Write;

@@ -1,6 +1,6 @@
 //! Output to the terminal: no control characters, no floods.
 
-mod common;
+use crate::common;
 
 use common::{file, folder, mozzi};
 use std::path::Path;

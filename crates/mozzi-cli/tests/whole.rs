@@ -1,6 +1,6 @@
 //! Files are written completely or not at all; other commands can read the files of a motion.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, file, folder, json, mozzi, rows, text};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Columns `wrench_FRAME_m_x` … of a table are wrenches of that frame.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, numbers, rows};
 

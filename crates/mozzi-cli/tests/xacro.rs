@@ -1,6 +1,6 @@
 //! `mozzi xacro`, and robots that are xacro files in every command.
 
-mod common;
+use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, mozzi, rows, text};
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! Emitted text, compiled and run, compared with the interpreter.
 #![allow(missing_docs)]
 
-mod common;
-mod harness;
+use crate::common;
+use crate::harness;
 
 use common::{compute, error, inputs, published, state, tree};
 use harness::{Call, Module, build, exists, rounded, run};

@@ -1,7 +1,7 @@
 //! Machine code of every shape that this processor runs, compared with the interpreter.
 #![allow(missing_docs)]
 
-mod common;
+use crate::common;
 
 use common::{error, inputs, quantities, robots, state, tolerance};
 use mozzi::Model;

@@ -1,7 +1,7 @@
 //! Recorded programs, interpreted, compared with the kernels.
 #![allow(missing_docs)]
 
-mod common;
+use crate::common;
 
 use common::{compute, error, inputs, quantities, robots, state, tolerance};
 use mozzi::quantities::InverseDynamics;

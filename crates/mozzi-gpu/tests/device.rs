@@ -1,7 +1,7 @@
 //! Kernels on a GPU, compared with the CPU. Skipped without one.
 #![allow(missing_docs)]
 
-mod common;
+use crate::common;
 
 use common::{LAYOUTS, PRECISIONS, embedded, error, form, inputs, quantities, robots, transposed};
 use mozzi::quantities::{InverseDynamics, Query};

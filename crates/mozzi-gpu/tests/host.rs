@@ -1,7 +1,7 @@
 //! The emitted kernels on the host, compared with the CPU's kernels in 64 bits.
 #![allow(missing_docs)]
 
-mod common;
+use crate::common;
 
 use common::host::{Call, exists, run};
 use common::{LAYOUTS, PRECISIONS, embedded, error, form, inputs, quantities, robots, transposed};

@@ -1,7 +1,7 @@
 //! Kernels through NVRTC, which needs no GPU; and what calls report without a GPU.
 #![allow(missing_docs)]
 
-mod common;
+use crate::common;
 
 use common::{LAYOUTS, PRECISIONS, embedded, form, nvrtc, quantities, robots};
 use mozzi::quantities::{ForwardDynamics, InverseDynamics, MassMatrix, Query};

@@ -1,7 +1,7 @@
 //! Rollouts on the host, compared with the CPU's.
 #![allow(missing_docs)]
 
-mod common;
+use crate::common;
 
 use common::host::{self, Call, exists, run};
 use common::{LAYOUTS, PRECISIONS, embedded, error, nvrtc, transposed};

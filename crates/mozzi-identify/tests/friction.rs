@@ -1,6 +1,6 @@
 //! Dry friction whose jumps pass the filter.
 
-mod common;
+use crate::common;
 
 use common::{motion, with_forces};
 use mozzi::random::Random;

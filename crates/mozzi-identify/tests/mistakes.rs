@@ -1,6 +1,6 @@
 //! Mistakes in logs are reported, and only those.
 
-mod common;
+use crate::common;
 
 use common::{cases, motion, with_forces};
 use mozzi::Model;

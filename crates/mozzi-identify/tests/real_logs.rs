@@ -3,7 +3,7 @@
 //! The logs are in ../shared/data/identification, the robots in the package `example-robot-data`, whose folder
 //! `MOZZI_ROBOTS` names.
 
-mod common;
+use crate::common;
 
 use common::{Case, cases};
 use mozzi_identify::estimate::consistent::Optimum;

@@ -1,8 +1,8 @@
 //! The convex estimate by a second, independent way: the semidefinite programs that cvxpy and Clarabel solved, in
 //! oracles/identify_sdp.json. `oracles/identify_sdp.py` makes that file from the problems that
-//! `cargo test -p mozzi-identify --test semidefinite -- --ignored` writes.
+//! `cargo test -p mozzi-identify semidefinite -- --ignored` writes.
 
-mod common;
+use crate::common;
 
 use common::{motion, with_forces};
 use mozzi::random::Random;

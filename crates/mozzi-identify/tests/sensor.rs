@@ -1,6 +1,6 @@
 //! Torques that were measured behind the gears, but taken for the motors'.
 
-mod common;
+use crate::common;
 
 use common::{cases, motion, with_forces};
 use mozzi::random::Random;

@@ -1,6 +1,6 @@
 //! Robots whose parameters are known, with logs made of them.
 
-mod common;
+use crate::common;
 
 use common::{floating_motion, humanoid, motion, normal, with_forces};
 use mozzi::random::Random;

@@ -1,7 +1,7 @@
 //! Constraints of MJCF against MuJoCo's own Jacobians, of Drake's words, and of files of their own.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{repository, vector};
 use mozzi::conventions::MuJoCo;

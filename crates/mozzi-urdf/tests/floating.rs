@@ -3,7 +3,7 @@
 //! a folder `floating` made by `oracles/make_floating.py`, a hundred states of every robot in it.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{BOUND, Worst, column, derivatives, largest_square, matrix, repository, vector};
 use mozzi::conventions::{MuJoCo, Pinocchio};

@@ -1,8 +1,7 @@
 //! Real robots: the embedded ones, and, if `MOZZI_ROBOTS` names the folder of the package `example-robot-data`, all of
 //! that package.
 
-#[path = "common/files.rs"]
-mod files;
+use crate::files;
 
 use files::urdf_files;
 use mozzi_urdf::{LoadError, Policy, Severity, embedded, load, load_with, open};

@@ -58,7 +58,7 @@ fn a_wrong_file_is_shown_with_its_place() {
     assert_ne!(wrong, UR5);
     let asked = json!({ "file": "ur5.urdf", "files": { "ur5.urdf": wrong } }).to_string();
     let said = Session::default().open(&asked).expect_err("a comma");
-    assert!(said.contains("8,393") && said.contains("ur5.urdf:") && said.contains("───"), "{said}");
+    assert!(said.contains("8,393") && said.contains("ur5.urdf:") && said.contains("━━━"), "{said}");
 }
 
 #[test]

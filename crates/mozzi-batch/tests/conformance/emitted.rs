@@ -1,6 +1,6 @@
 //! Every quantity of a robot as C, compiled and called.
 
-use crate::{Case, close};
+use super::{Case, close};
 use mozzi::quantities::{LIST, Query};
 use mozzi_codegen::{Arguments, Language, Precision, emit_into, record_quantity};
 use std::process::Command;

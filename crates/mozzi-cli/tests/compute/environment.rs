@@ -1,9 +1,9 @@
 //! Wrenches, gravity and parameters: by flags, and different in each state.
 
+use super::files::{npy, npz, read_npz, save};
+use super::largest;
+use super::states::States;
 use crate::common::{assert_close, folder, json, numbers, rows, text};
-use crate::files::{npy, npz, read_npz, save};
-use crate::largest;
-use crate::states::States;
 use mozzi::{Environment, Model, Vec3, Wrench};
 
 const THETA: [&str; 2] = ["--theta", "0.2,-1.2,1.5,0.3,1.1,0.4"];

@@ -1,7 +1,7 @@
 //! Flags without effect are refused, and so are unknown names.
 
+use super::files::npz;
 use crate::common::{complaint, folder, text};
-use crate::files::npz;
 
 fn wrong(arguments: &[&str], expected: &str) {
     let (code, message) = complaint(&[&["compute"], arguments].concat());

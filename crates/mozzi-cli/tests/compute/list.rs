@@ -1,9 +1,9 @@
 //! Every quantity of the list: at one state, and from a table.
 
+use super::files::read_npz;
+use super::states::States;
+use super::{largest, tied};
 use crate::common::{assert_close, folder, json, mozzi, numbers, text};
-use crate::files::read_npz;
-use crate::states::States;
-use crate::{largest, tied};
 use mozzi::quantities::{LIST, Of, Uses};
 use serde_json::Value;
 

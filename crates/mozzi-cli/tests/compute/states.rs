@@ -1,6 +1,6 @@
 //! States of a robot, in files.
 
-use crate::files::npz;
+use super::files::npz;
 use mozzi::Model;
 use std::path::Path;
 

@@ -1,5 +1,5 @@
 //! MuJoCo models.
-use crate::{refused, warned};
+use super::{refused, warned};
 
 /// A model of two joints with something behind it.
 macro_rules! pair {

@@ -1,5 +1,5 @@
 //! MuJoCo models that load, with a report of the content that is left out.
-use crate::warned;
+use super::warned;
 use mozzi_urdf::{Policy, parse, parse_with};
 
 const MASS: &str = "<geom size='1'/>";

@@ -91,7 +91,7 @@ fn drops_end_by_every_method() {
     drop_all(Method::DormandPrince { tolerance: 1e-6 }, 60, 0.2);
 }
 
-/// Takes minutes in release: `cargo test --release -p mozzi --test one_sided -- --ignored adaptive --nocapture`.
+/// Takes minutes in release: `cargo test --release -p mozzi one_sided -- --ignored adaptive --nocapture`.
 #[test]
 #[ignore = "a thousand adaptive simulations"]
 fn a_thousand_adaptive_drops_end() {

@@ -3,8 +3,7 @@
 #![allow(non_snake_case)]
 
 mod by_python;
-#[path = "../common/mod.rs"]
-mod common;
+use crate::common;
 mod environment;
 mod files;
 mod flags;

@@ -3,8 +3,7 @@
 //!
 //! `cargo xtask docs` rewrites the page.
 
-#[path = "../common/files.rs"]
-mod files;
+use crate::files;
 
 use files::urdf_files;
 use mozzi_urdf::{Diagnostic, Severity, load};

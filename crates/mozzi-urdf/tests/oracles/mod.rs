@@ -4,8 +4,7 @@
 //! Errors are normalised: |x − reference| over ε times the size of the terms that x is the sum of.
 #![allow(clippy::unwrap_used)]
 
-#[path = "../common/mod.rs"]
-mod common;
+use crate::common;
 mod models;
 
 use common::{BOUND, Worst, column, derivatives, largest_square, matrix, repository, vector};

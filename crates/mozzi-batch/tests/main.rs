@@ -1,0 +1,13 @@
+//! The tests in one program: each links the crate and all that it needs.
+
+#[path = "../../mozzi-codegen/tests/common/mod.rs"]
+mod common;
+mod compiled;
+mod compiled_simulation;
+mod conformance;
+mod directional;
+mod machine_code_arrays;
+mod many_states;
+mod quantities_page;
+mod refused;
+mod sticking;

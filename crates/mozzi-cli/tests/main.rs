@@ -1,0 +1,36 @@
+//! The tests in one program: each links the crate and all that it needs.
+
+mod answers;
+mod browser;
+mod codegen;
+mod common;
+mod compare;
+mod complaints;
+mod compute;
+mod constraints;
+mod convert;
+mod damaged;
+mod events;
+mod floating;
+mod gpu;
+mod ground;
+mod identify;
+mod identify_files;
+mod ik;
+mod interrupt;
+mod logs;
+mod motion;
+mod page;
+mod page_contacts;
+mod page_numbers;
+mod play;
+mod plot;
+mod shell;
+mod sources;
+mod states;
+mod tables;
+mod terminal;
+mod view;
+mod whole;
+mod wrench_columns;
+mod xacro;

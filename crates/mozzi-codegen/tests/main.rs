@@ -1,0 +1,8 @@
+//! The tests in one program: each links the crate and all that it needs.
+
+mod common;
+mod controller;
+mod emitted;
+mod harness;
+mod machine_code;
+mod programs;

@@ -1,0 +1,21 @@
+//! The tests in one program: each links the crate and all that it needs.
+
+mod common;
+mod constraints;
+mod damaged;
+mod drake;
+mod edit;
+mod edit_files;
+#[path = "common/files.rs"]
+mod files;
+mod floating;
+mod freedoms;
+mod keyframes;
+mod mjcf;
+mod oracles;
+mod published;
+mod refused;
+mod reports;
+mod robots;
+mod round_trip;
+mod xacro;
