@@ -1,5 +1,4 @@
-//! A million inverse dynamics of the UR5: one row for each state, as in NumPy, on the machine's widest registers and
-//! all cores.
+//! A million inverse dynamics of the UR5: one row for each state, as in NumPy, by machine code and on all cores.
 //!
 //! `cargo run --release -p mozzi-examples --example 17_million_states` computes a million states; a number after `--`
 //! sets another count. Without optimisation the default is a thousand.
@@ -32,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         seconds = seconds.min(start.elapsed().as_secs_f64());
     }
     let rate = states as f64 / seconds;
-    println!("f64, {}: {states} states in {seconds:.4} s, {rate:.3e} states/s", batch.instruction_set().name());
+    println!("f64, {}: {states} states in {seconds:.4} s, {rate:.3e} states/s", batch.engine(InverseDynamics));
 
     // half the bits, and twice as many states in a register
     let [theta32, dtheta32, ddtheta32] =
@@ -46,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         seconds = seconds.min(start.elapsed().as_secs_f64());
     }
     let rate = states as f64 / seconds;
-    println!("f32, {}: {states} states in {seconds:.4} s, {rate:.3e} states/s", single.instruction_set().name());
+    println!("f32, {}: {states} states in {seconds:.4} s, {rate:.3e} states/s", single.engine(InverseDynamics));
 
     let largest = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let (mut apart, mut apart32) = (0.0_f64, 0.0_f64);

@@ -1,12 +1,13 @@
-//! mozzi at many states at once, on one thread: tables in rows, as callers have them, or in blocks.
+//! mozzi at many states at once, on one thread.
 
 use crate::compiled;
 use crate::contestant::Contestant;
 use crate::quantity::{self, Outputs, compared};
 use mozzi::Model;
 use mozzi::quantities::Query;
-use mozzi_batch::{Batch, Error, InstructionSet, Layout};
+use mozzi_batch::{Batch, Error};
 use mozzi_benches::{States, inputs};
+use mozzi_codegen::Shape;
 use std::hint::black_box;
 
 /// All states in one call.
@@ -20,24 +21,16 @@ pub struct Batched {
 }
 
 impl Batched {
-    /// By the kernels, or by machine code; none if the machine has no such registers.
-    pub fn new(model: &Model, states: &States, set: InstructionSet, layout: Layout, is_compiled: bool) -> Option<Self> {
-        let batch = Batch::new(model).with_instruction_set(set).and_then(|batch| batch.with_threads(1)).ok()?;
-        let mut batch = batch.with_layout(layout);
-        let mut quantities: Vec<_> = quantity::of(model).map(|query| (query, None)).collect();
-        if is_compiled {
-            batch = batch.compile(&quantity::of(model).collect::<Vec<_>>()).ok()?;
-            quantities = compiled::quantities(model, |query| batch.engine(query));
-        }
+    /// By machine code of this shape; none if the machine cannot run it.
+    pub fn new(model: &Model, states: &States, shape: Shape) -> Option<Self> {
+        let batch = Batch::new(model).with_shape(shape).and_then(|batch| batch.with_threads(1)).ok()?;
+        let batch = batch.compile(&quantity::of(model).collect::<Vec<_>>()).ok()?;
+        let quantities = compiled::quantities(model, |query| batch.engine(query));
         let mut tables: [Vec<f64>; 4] = Default::default();
         for state in states.iter() {
             for (table, row) in tables.iter_mut().zip(state) {
                 table.extend(row);
             }
-        }
-        if layout == Layout::Blocks {
-            let widths = [model.nq(), model.n(), model.n(), model.n()];
-            tables.iter_mut().zip(widths).for_each(|(table, width)| *table = batch.to_blocks(table, width));
         }
         let outputs = Outputs::new(model, states.count());
         Some(Batched { batch, quantities, tables, outputs })
@@ -71,18 +64,9 @@ impl Contestant for Batched {
         if state == 0 {
             self.evaluate(query).map_err(|error| error.to_string())?; // of all states
         }
-        let (batch, lanes) = (&self.batch, self.batch.lanes());
-        let widths: Vec<usize> = query.output_lengths(batch.model()).collect();
-        let tables = self.outputs.of(query, batch.model());
-        let part = |place: usize| {
-            let (table, width) = (&tables[place], widths[place]);
-            match batch.layout() {
-                Layout::Rows => table[state * width..][..width].to_vec(),
-                Layout::Blocks => batch.to_rows(&table[state / lanes * lanes * width..], width, lanes)
-                    [state % lanes * width..][..width]
-                    .to_vec(),
-            }
-        };
+        let widths: Vec<usize> = query.output_lengths(self.batch.model()).collect();
+        let tables = self.outputs.of(query, self.batch.model());
+        let part = |place: usize| tables[place][state * widths[place]..][..widths[place]].to_vec();
         Ok(compared(query).flat_map(part).collect())
     }
 }

@@ -8,8 +8,9 @@ use crate::quantity::{self, Outputs, compared};
 use mozzi::Model;
 use mozzi::fast::{self, Workspace};
 use mozzi::quantities::Query;
-use mozzi_batch::{InstructionSet, Layout, compile};
+use mozzi_batch::compile;
 use mozzi_benches::{States, inputs};
+use mozzi_codegen::Shape;
 use std::hint::black_box;
 
 /// All of them; the first is the unit of the tables.
@@ -29,18 +30,9 @@ pub fn all<'a>(model: &'a Model, states: &'a States) -> Result<Vec<Entry<'a>>, S
         robot.evaluate(*query, inputs, outputs);
     });
     entries.push(Entry { name: "compiled".into(), width: Some(Width::Scalar), contestant: Box::new(one) });
-    let registers = [(InstructionSet::Avx2, Width::Four), (InstructionSet::Avx512, Width::Eight)];
-    for (name, layout, is_compiled) in [
-        ("batch", Layout::Rows, false),
-        ("blocks", Layout::Blocks, false),
-        ("compiled", Layout::Rows, true),
-        ("compiled blocks", Layout::Blocks, true),
-    ] {
-        for (set, width) in registers {
-            let name = format!("{name} {}", set.name());
-            let batched = Batched::new(model, states, set, layout, is_compiled);
-            entries.extend(batched.map(|batched| Entry { name, width: Some(width), contestant: Box::new(batched) }));
-        }
+    for (set, shape, width) in [("avx2", Shape::FourF64, Width::Four), ("avx512", Shape::EightF64, Width::Eight)] {
+        let (name, batched) = (format!("arrays {set}"), Batched::new(model, states, shape));
+        entries.extend(batched.map(|batched| Entry { name, width: Some(width), contestant: Box::new(batched) }));
     }
     Ok(entries)
 }

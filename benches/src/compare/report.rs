@@ -67,9 +67,8 @@ fn how() -> String {
   Where a library has several algorithms for a quantity, the fastest is quoted.
 - Nanoseconds for one state: least of all rounds / median. In bold the time over mozzi's, least over least; behind it median over median.
 - mozzi: {rustc}, release profile, no flags: `mozzi::fast` finds FMA when it runs; portable is the same source
-  without them; batch is `mozzi_batch`, all states in one call on one thread, tables by rows; blocks
-  the same with tables in blocks; compiled is `mozzi_codegen`, machine code
-  made for the one robot when the program runs, up to 256 kB; of many states up to 512 kB (AVX2) and 2 MB (AVX-512).
+  without them; compiled is machine code made for the one robot when the program runs; arrays are what a call with
+  many states gives by default, on one thread: machine code for 4 (AVX2) or 8 (AVX-512) states in a register.
 "
     )
 }
@@ -78,13 +77,11 @@ fn how() -> String {
 const GENERATED: &str = "CasADi";
 
 /// mozzi's columns with which the peers are compared.
-const WAYS: [(&str, &str); 6] = [
+const WAYS: [(&str, &str); 4] = [
     ("mozzi", "One state a call"),
     ("compiled", "One state a call, compiled"),
-    ("batch avx2", "Many states, AVX2"),
-    ("batch avx512", "Many states, AVX-512"),
-    ("compiled avx2", "Many states, compiled, AVX2"),
-    ("compiled avx512", "Many states, compiled, AVX-512"),
+    ("arrays avx2", "Many states, AVX2"),
+    ("arrays avx512", "Many states, AVX-512"),
 ];
 
 /// Those of any table: a robot with constraints has its own.

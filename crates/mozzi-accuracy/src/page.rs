@@ -219,7 +219,9 @@ fn peers(text: &mut String, all: &[Measured]) {
     )
     .expect("a text grows");
     let head: Vec<String> =
-        ["robot and quantity", "mozzi, one state", "mozzi, arrays", "Pinocchio", "MuJoCo"].map(String::from).to_vec();
+        ["robot and quantity", "mozzi, one state", "mozzi, machine code in arrays", "Pinocchio", "MuJoCo"]
+            .map(String::from)
+            .to_vec();
     let rows = asked.iter().flat_map(|robot| {
         (0..LIST.len()).filter_map(move |quantity| {
             let own = |way: Way| robot.rows.iter().find(|row| (row.quantity, row.way) == (quantity, way.name()));
@@ -235,7 +237,7 @@ fn peers(text: &mut String, all: &[Measured]) {
                     Some(x) => cell(*x),
                     None => "–".into(),
                 };
-                let arrays = own(Way::Lanes).map_or("–".into(), |row| cell(row.errors.whole()));
+                let arrays = own(Way::MachineCodeLanes).map_or("–".into(), |row| cell(row.errors.whole()));
                 let name = format!("{}: {}", robot.name, LIST[quantity].name);
                 [name, cell(one), arrays].into_iter().chain(found.iter().map(peer)).collect()
             })

@@ -3,7 +3,7 @@
 use crate::reference::applied;
 use crate::robot::{Robot, is_of_wrenches};
 use crate::states::States;
-use mozzi::quantities::{self, Kernel, Quantity, Query};
+use mozzi::quantities::Query;
 use mozzi::{Environment, fast};
 use mozzi_batch::{Batch, Compiled, Engine, Number, compile};
 
@@ -14,27 +14,23 @@ pub enum Way {
     Plain,
     /// The kernel with fused multiply-add.
     Fused,
-    /// Many states in registers.
-    Lanes,
     /// Machine code at one state.
     MachineCode,
     /// Machine code at many states.
     MachineCodeLanes,
-    /// Many states in registers of `f32`.
+    /// Machine code at many states in `f32`.
     Single,
 }
 
 impl Way {
     /// All.
-    pub const ALL: [Way; 6] =
-        [Way::Plain, Way::Fused, Way::Lanes, Way::MachineCode, Way::MachineCodeLanes, Way::Single];
+    pub const ALL: [Way; 5] = [Way::Plain, Way::Fused, Way::MachineCode, Way::MachineCodeLanes, Way::Single];
 
     /// Its name in the tables.
     pub fn name(self) -> &'static str {
         match self {
             Way::Plain => "f64",
             Way::Fused => "f64, FMA",
-            Way::Lanes => "arrays",
             Way::MachineCode => "machine code",
             Way::MachineCodeLanes => "machine code, arrays",
             Way::Single => "f32 arrays",
@@ -49,15 +45,6 @@ impl Way {
 
 /// Largest number of velocities for which a program is recorded; above it, programs would have millions of operations.
 const LARGEST_RECORDED: usize = 80;
-
-/// True if arrays of this quantity are computed by a kernel, not by a recorded program.
-fn has_registers(query: &Query) -> bool {
-    macro_rules! answers {
-        ($($Q:ident)*) => { &[$(<quantities::$Q as Quantity>::Registers::HAS_REGISTERS),*] };
-    }
-    const ANSWERS: &[bool] = mozzi::quantities!(answers);
-    ANSWERS[query.index()]
-}
 
 /// A quantity of a robot, ready to be computed in a way.
 pub struct Computer<'r> {
@@ -87,9 +74,12 @@ impl<'r> Computer<'r> {
         let engine = match way {
             Way::Plain => Inner::One(fast::Workspace::portable(model)),
             Way::Fused => Inner::One(fast::Workspace::new(model)).which(|one| one.is_fused())?,
-            Way::Lanes | Way::Single if !is_short && !has_registers(&query) => return None,
-            Way::Lanes => Inner::Many(many()?),
-            Way::Single => Inner::Single(Batch::of(model).with_threads(1).ok()?),
+            Way::Single => {
+                let batch =
+                    own.then(|| Batch::<f32>::of(model).with_threads(1).ok()?.compile(&[query]).ok()).flatten()?;
+                let is_code = matches!(batch.engine(query), Engine::MachineCode { .. });
+                Inner::Single(batch).which(|_| is_code)?
+            }
             Way::MachineCode => {
                 let compiled = own.then(|| compile(model, &[query]).ok()).flatten()?;
                 let is_code = matches!(compiled.engine(query), Engine::MachineCode { .. });

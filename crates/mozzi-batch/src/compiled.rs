@@ -1,6 +1,6 @@
 //! A robot with quantities as machine code.
 
-use crate::{Batch, Engine, Layout};
+use crate::{Batch, Engine};
 use mozzi::quantities::{ForwardDynamics, Of, Query};
 use mozzi::simulation::{self, Input, Options, Simulation};
 use mozzi::{Error, Model, Trajectory, fast, least_is_clear};
@@ -89,7 +89,7 @@ pub fn compile(model: &Model, queries: &[Query]) -> Result<Compiled, Error> {
 }
 
 impl Compiled {
-    /// Compiles for many states with this batch's instructions, threads and layout. See [`compile`].
+    /// Compiles for many states with this batch's shape and threads. See [`compile`].
     ///
     /// # Errors
     /// See [`compile`].
@@ -121,11 +121,6 @@ impl Compiled {
     /// [`Error::Threads`](crate::Error::Threads) for 0 threads.
     pub fn with_threads(self, threads: usize) -> Result<Self, crate::Error> {
         Ok(Compiled { batch: self.batch.with_threads(threads)?, ..self })
-    }
-
-    /// Sets the layout of tables of many states; row-major by default.
-    pub fn with_layout(self, layout: Layout) -> Self {
-        Compiled { batch: self.batch.with_layout(layout), ..self }
     }
 
     /// The engine that computes this quantity at one state.

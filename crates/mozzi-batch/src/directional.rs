@@ -2,7 +2,7 @@
 
 use crate::chunk::{Fixed, Table, TableMut};
 use crate::request::Request;
-use crate::{Batch, BatchEnvironment, Error, Layout};
+use crate::{Batch, BatchEnvironment, Error};
 use mozzi::kinematics::integrate;
 use mozzi::model::least_is_clear;
 use mozzi::quantities::{Dim, Input, Memory, Query};
@@ -100,10 +100,6 @@ impl Batch<f64> {
         derivatives: &mut [&mut [f64]],
     ) -> Result<(), Error> {
         let query = query.into();
-        if self.layout() != Layout::Rows {
-            let rows = self.clone().with_layout(Layout::Rows);
-            return rows.directional_derivative(query, inputs, direction, environment, values, derivatives);
-        }
         let (model, declaration) = (self.model(), query.declaration());
         query.check_subject(model)?;
         let (k, outputs) = (declaration.inputs.len(), declaration.outputs);

@@ -11,8 +11,6 @@ pub enum Engine {
     MachineCode(Shape, usize),
     /// The kernels, and the reason why there is no machine code.
     Kernels(Refusal),
-    /// The recorded program, interpreted step by step on registers, and the reason why there is no machine code.
-    Interpreter(Refusal),
 }
 
 impl Engine {
@@ -22,14 +20,6 @@ impl Engine {
             Err(refusal) => Engine::Kernels(*refusal),
         }
     }
-
-    /// The engine of a quantity that has no kernel on registers.
-    pub(crate) fn of_program(code: &Result<Arc<Kernel>, Refusal>) -> Self {
-        match Engine::of(code) {
-            Engine::Kernels(refusal) => Engine::Interpreter(refusal),
-            engine => engine,
-        }
-    }
 }
 
 impl fmt::Display for Engine {
@@ -37,7 +27,6 @@ impl fmt::Display for Engine {
         match self {
             Engine::MachineCode(shape, bytes) => write!(f, "machine code ({}), {bytes} bytes", shape.instruction_set()),
             Engine::Kernels(refusal) => write!(f, "kernels: {refusal}"),
-            Engine::Interpreter(refusal) => write!(f, "interpreter: {refusal}"),
         }
     }
 }

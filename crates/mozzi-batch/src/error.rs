@@ -1,13 +1,13 @@
 //! Errors of batches.
 
-use crate::InstructionSet;
+use mozzi_codegen::Shape;
 
 /// Errors of batches. An error names the first state that failed; no state is skipped silently.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A table of a wrong length.
-    #[error("{what} has {found} numbers, expected {expected} ({states} states of {width}{})", padded(*lanes))]
+    #[error("{what} has {found} numbers, expected {expected} ({states} states of {width})")]
     WrongLength {
         /// The table's name.
         what: &'static str,
@@ -19,11 +19,9 @@ pub enum Error {
         states: usize,
         /// Numbers for each state.
         width: usize,
-        /// States in a block if the layout is in blocks; else 1.
-        lanes: usize,
     },
     /// The first table, such as θ, is not a whole number of states.
-    #[error("{what} has {found} numbers, expected a multiple of {width}: {width} numbers a state{}", padded(*lanes))]
+    #[error("{what} has {found} numbers, expected a multiple of {width}: {width} numbers a state")]
     IncompleteState {
         /// The table's name: the first table.
         what: &'static str,
@@ -31,8 +29,6 @@ pub enum Error {
         found: usize,
         /// Numbers for each state.
         width: usize,
-        /// States in a block if the layout is in blocks; else 1.
-        lanes: usize,
     },
     /// A state that could not be computed.
     #[error("state {index} (counted from 0): {source}")]
@@ -45,11 +41,11 @@ pub enum Error {
     /// An error that concerns all states.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
-    /// The machine does not have these registers.
-    #[error("this machine has no {}; it has {}", set.name(), names())]
-    UnsupportedInstructionSet {
-        /// The requested name.
-        set: InstructionSet,
+    /// Not a shape of machine code for several states of this number type, or not of this processor.
+    #[error("machine code of {} for {} states at once is not for these numbers, or not for this processor", shape.instruction_set(), shape.lanes())]
+    Shape {
+        /// The requested one.
+        shape: Shape,
     },
     /// Threads could not be started.
     #[error("{threads} threads could not be started: {reason}")]
@@ -69,12 +65,4 @@ impl Error {
             other => other,
         }
     }
-}
-
-fn padded(lanes: usize) -> String {
-    if lanes == 1 { String::new() } else { format!(", in whole blocks of {lanes} states") }
-}
-
-fn names() -> String {
-    InstructionSet::available().iter().map(|set| set.name()).collect::<Vec<_>>().join(", ")
 }

@@ -8,7 +8,7 @@ use mozzi_codegen::Arguments;
 
 /// The quantity and its arguments. Its tables are the quantity's inputs, then those of the environment: parameters,
 /// gravity, wrenches.
-pub struct Request<'a, T> {
+pub(crate) struct Request<'a, T> {
     pub query: Query<'a>,
     pub model: &'a Model,
     /// The parts of the whole batch's environment that the quantity uses.
@@ -31,6 +31,18 @@ impl<'a, T: Number> Request<'a, T> {
         }
     }
 
+    /// All tables: the quantity's inputs, then those of the environment.
+    pub fn tables(&self, inputs: &[&'a [T]]) -> Vec<Table<'a, T>> {
+        let declared = self.query.declaration().inputs.iter().zip(self.query.input_lengths(self.model));
+        let own = declared.zip(inputs).map(|((input, width), numbers)| Table { name: input.name, numbers, width });
+        own.chain(self.further()).collect()
+    }
+
+    /// The frames of the tables of wrenches.
+    pub fn frames(&self) -> impl Iterator<Item = FrameId> {
+        self.wrenches.iter().map(|&(frame, _)| frame)
+    }
+
     /// The tables of the environment, in their order.
     pub fn further(&self) -> impl Iterator<Item = Table<'a, T>> + use<'_, 'a, T> {
         let table = |name, numbers, width| Table { name, numbers, width };
@@ -38,14 +50,6 @@ impl<'a, T: Number> Request<'a, T> {
         let gravity = self.gravity.map(|numbers| table("gravity", numbers, 3));
         let wrenches = self.wrenches.iter().map(move |&(_, numbers)| table("wrenches", numbers, 6));
         parameters.into_iter().chain(gravity).chain(wrenches)
-    }
-
-    /// True if the robot is in its own gravity, its base at rest, with no applied wrenches and its own parameters.
-    pub fn is_own(&self) -> bool {
-        let (its, own) = (&self.environment, self.query.declaration().uses.of(&self.model.environment()));
-        let at_rest = its.base_twist == own.base_twist && its.base_acceleration == own.base_acceleration;
-        let is_alike = self.parameters.is_none() && self.gravity.is_none() && self.wrenches.is_empty();
-        is_alike && at_rest && its.gravity == own.gravity && its.applied.is_empty()
     }
 
     /// The arguments of a program for this request, with `frames` as memory; none if the environment is the robot's

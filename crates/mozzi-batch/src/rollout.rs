@@ -1,19 +1,19 @@
-//! Rollouts of many robots of one model, and gradients through them: [`mozzi::simulation::Rollout`] on registers, or
+//! Rollouts of many robots of one model, and gradients through them: [`mozzi::simulation::Rollout`] together, or
 //! [one by one](each).
 
 mod each;
 
 use crate::threads::Threads;
-use crate::{Batch, BatchEnvironment, Error, Layout};
+use crate::{Batch, BatchEnvironment, Error};
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsVjp};
 use mozzi::simulation::{ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables};
-use mozzi::{Model, Vec3};
+use mozzi::{Environment, Model, Vec3};
 use std::convert::identity;
 
-/// Robots that one thread moves together, in registers.
+/// Robots that one thread moves together.
 const TOGETHER: usize = 64;
 
-/// How the rollouts of a batch run. The tables are row-major whatever the batch's layout is.
+/// How the rollouts of a batch run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BatchRollout {
     /// h > 0, s.
@@ -75,7 +75,7 @@ impl Batch<f64> {
                 rollout.write_states(theta, dtheta, tau, theta_table, dtheta_table)
             });
         }
-        self.by_pieces(options, robots, tables.collect(), |steps, first, count, (theta_table, dtheta_table)| {
+        self.by_pieces(options, false, robots, tables.collect(), |steps, first, count, (theta_table, dtheta_table)| {
             let part = |table, width| part(table, first, count, width);
             let (start, tau) = ([part(theta, nq), part(dtheta, n)], part(tau, options.steps * n));
             let mut tables = Rows { robots: count, tau, lost: None, states: [theta_table, dtheta_table], bars: None };
@@ -127,18 +127,24 @@ impl Batch<f64> {
                 },
             );
         }
-        self.by_pieces(options, robots, outputs, |steps, first, count, [to_theta, to_dtheta, to_tau, to_parameters]| {
-            let part = |table, width| part(table, first, count, width);
-            let (start, tau) = ([part(theta, nq), part(dtheta, n)], part(tau, N * n));
-            let bars = Some(([part(theta_bar, rows * n), part(dtheta_bar, rows * n)], to_tau));
-            let mut tables = Rows { robots: count, tau, lost: None, states: [&mut [], &mut []], bars };
-            let found = steps.gradient(start, N, options.checkpoints_every, p > 0, &mut tables)?;
-            to_theta.copy_from_slice(found.theta);
-            to_dtheta.copy_from_slice(found.dtheta);
-            to_parameters.copy_from_slice(found.parameters);
-            let lost = tables.lost;
-            self.check_lost(lost, options)
-        })
+        self.by_pieces(
+            options,
+            true,
+            robots,
+            outputs,
+            |steps, first, count, [to_theta, to_dtheta, to_tau, to_parameters]| {
+                let part = |table, width| part(table, first, count, width);
+                let (start, tau) = ([part(theta, nq), part(dtheta, n)], part(tau, N * n));
+                let bars = Some(([part(theta_bar, rows * n), part(dtheta_bar, rows * n)], to_tau));
+                let mut tables = Rows { robots: count, tau, lost: None, states: [&mut [], &mut []], bars };
+                let found = steps.gradient(start, N, options.checkpoints_every, p > 0, &mut tables)?;
+                to_theta.copy_from_slice(found.theta);
+                to_dtheta.copy_from_slice(found.dtheta);
+                to_parameters.copy_from_slice(found.parameters);
+                let lost = tables.lost;
+                self.check_lost(lost, options)
+            },
+        )
     }
 
     /// Checks the starts and the options; the number of robots.
@@ -146,7 +152,7 @@ impl Batch<f64> {
         options.of_one(self.model())?;
         let (nq, n) = (self.model().nq().max(1), self.model().n());
         if !theta.len().is_multiple_of(nq) {
-            return Err(Error::IncompleteState { what: "theta", found: theta.len(), width: nq, lanes: 1 });
+            return Err(Error::IncompleteState { what: "theta", found: theta.len(), width: nq });
         }
         let robots = theta.len() / nq;
         check_lengths(robots, [("dtheta", dtheta.len(), n), ("tau", tau.len(), options.steps * n)])?;
@@ -170,11 +176,17 @@ impl Batch<f64> {
     fn by_pieces<I: Send>(
         &self,
         options: &BatchRollout,
+        is_gradient: bool,
         robots: usize,
         pieces: Vec<I>,
         f: impl Fn(&mut Steps<ExplicitSteps<Together>>, usize, usize, I) -> Result<(), Error> + Sync,
     ) -> Result<(), Error> {
-        let (method, alone) = (options.method.explicit()?, self.on(Threads::One).with_layout(Layout::Rows));
+        let method = options.method.explicit()?;
+        let queries = [ForwardDynamics.into(), ForwardDynamicsVjp.into()];
+        let environment = environment(self.model(), options.gravity);
+        let alone =
+            self.for_job_of(&queries[..if is_gradient { 2 } else { 1 }], &environment, robots * options.steps)?;
+        let alone = alone.on(Threads::One);
         let pieces: Vec<_> = pieces.into_iter().enumerate().collect();
         let results = self.workers().map(
             pieces,
@@ -203,6 +215,12 @@ impl Batch<f64> {
     }
 }
 
+/// The robot's own environment, or with this gravity.
+fn environment(model: &Model, gravity: Option<Vec3>) -> BatchEnvironment<'static, f64> {
+    let own = model.environment();
+    Environment { gravity: gravity.unwrap_or(own.gravity), ..own }.into()
+}
+
 /// Many robots' forward dynamics and its products, on one thread.
 struct Together<'b> {
     batch: &'b Batch<f64>,
@@ -213,10 +231,8 @@ struct Together<'b> {
 
 impl<'b> Together<'b> {
     fn new(batch: &'b Batch<f64>, gravity: Option<Vec3>, robots: usize) -> Self {
-        let mut environment = batch.model().environment();
-        environment.gravity = gravity.unwrap_or(environment.gravity);
-        let parameters = ParameterGradient::new(batch.model());
-        Together { batch, environment: environment.into(), parameters, robots }
+        let (model, parameters) = (batch.model(), ParameterGradient::new(batch.model()));
+        Together { batch, environment: environment(model, gravity), parameters, robots }
     }
 
     fn model(&self) -> &'b Model {
@@ -332,7 +348,7 @@ fn check_lengths<const K: usize>(robots: usize, tables: [(&'static str, usize, u
     match tables.into_iter().find(|&(_, found, width)| found != robots * width) {
         None => Ok(()),
         Some((what, found, width)) => {
-            Err(Error::WrongLength { what, found, expected: robots * width, states: robots, width, lanes: 1 })
+            Err(Error::WrongLength { what, found, expected: robots * width, states: robots, width })
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Simulation of many robots of one model: together in registers, or [one by one](each).
+//! Simulation of many robots of one model: together, or [one by one](each).
 
 mod each;
 
 use crate::chunk::Table;
 use crate::request::Request;
 use crate::threads::Threads;
-use crate::{Batch, BatchEnvironment, Error, Layout, Number};
+use crate::{Batch, BatchEnvironment, Error, Number};
 use mozzi::simulation::{Closer, Method, Motion, Options, forward_dynamics_of};
 
 /// The number of robots that one thread moves together, so that their states and the method's stages stay in its cache.
@@ -53,30 +53,13 @@ impl<T: Number> Batch<T> {
         if states == 0 || n == 0 {
             return Ok(());
         }
-        if self.layout() == Layout::Blocks {
-            // robots are moved as rows: quaternions are integrated one by one
-            let rows = |table: &[T], width| self.to_rows(table, width, states);
-            let wrenches: Vec<_> = environment.wrenches.iter().map(|&(frame, table)| (frame, rows(table, 6))).collect();
-            let wrenches: Vec<_> = wrenches.iter().map(|(frame, table)| (*frame, &table[..])).collect();
-            let gravity = environment.gravity.map(|table| rows(table, 3));
-            let parameters = environment.parameters.map(|table| rows(table, self.model().parameter_count()));
-            let (gravity, parameters) = (gravity.as_deref(), parameters.as_deref());
-            let environment = BatchEnvironment { wrenches: &wrenches, gravity, parameters, ..*environment };
-            let (mut q, mut v, tau) = (rows(theta, nq), rows(dtheta, n), rows(tau, n));
-            let by_rows = self.clone().with_layout(Layout::Rows);
-            by_rows.simulate(&mut q, &mut v, &tau, &environment, method, duration, steps)?;
-            theta.copy_from_slice(&self.to_blocks(&q, nq));
-            dtheta.copy_from_slice(&self.to_blocks(&v, n));
-            return Ok(());
-        }
-
         self.check_closed(theta, dtheta)?;
         if is_alone {
             let options = Options { method, record_every: steps, ..Options::new(duration, steps) };
             return self.simulate_alone([theta, dtheta], tau, environment, &options);
         }
         let explicit = method.explicit()?;
-        let alone = self.on(Threads::One);
+        let alone = self.for_job_of(&[query], environment, states * steps)?.on(Threads::One);
         let m = self.model().constraint_rows();
         let pieces: Vec<_> = theta.chunks_mut(TOGETHER * nq).zip(dtheta.chunks_mut(TOGETHER * n)).enumerate().collect();
         let results = self.workers().map(

@@ -5,7 +5,7 @@ use mozzi::quantities::{
     ForwardDynamics, ForwardDynamicsDerivatives, InverseDynamics, InverseDynamicsDerivatives, MomentumVjp, Query,
 };
 use mozzi::{Description, Model, SE3, SpatialInertia, Vec3};
-use mozzi_batch::{Batch, BatchEnvironment, Direction, Layout};
+use mozzi_batch::{Batch, BatchEnvironment, Direction};
 
 fn anymal() -> Model {
     let robot = mozzi_urdf::open("anymal").expect("embedded");
@@ -37,7 +37,7 @@ fn assert_close(found: &[f64], expected: &[f64]) {
 #[test]
 fn an_input_of_six_numbers_has_a_rate_of_six() {
     let (model, states) = (anymal(), 3);
-    let (n, batch) = (model.n(), Batch::new(&model).with_layout(Layout::Rows));
+    let (n, batch) = (model.n(), Batch::new(&model));
     let query = Query::from(MomentumVjp).about(Vec3([0.1, 0.2, 0.3]));
     let (theta, dtheta) = (positions(&model, states), numbers(states * n, 2.0));
     let (w, dw) = (numbers(states * 6, 3.0), numbers(states * 6, 4.0));
@@ -60,13 +60,12 @@ fn an_input_of_six_numbers_has_a_rate_of_six() {
 #[test]
 fn rates_are_the_matrices_times_the_direction() {
     let (model, states) = (anymal(), 70);
-    let (n, batch) = (model.n(), Batch::new(&model).with_layout(Layout::Blocks));
+    let (n, batch) = (model.n(), Batch::new(&model));
     let theta = positions(&model, states);
     let inputs = [theta, numbers(states * n, 2.0), numbers(states * n, 3.0)];
     let rates = [4.0, 5.0, 6.0].map(|seed| numbers(states * n, seed));
     let (inputs, rates) = (inputs.each_ref().map(Vec::as_slice), rates.each_ref().map(|rate| Some(rate.as_slice())));
     let environment: BatchEnvironment = model.environment().into();
-    let rows = batch.clone().with_layout(Layout::Rows);
     let pairs: [(Query, Query, usize); 2] = [
         (InverseDynamics.into(), InverseDynamicsDerivatives.into(), 0),
         (ForwardDynamics.into(), ForwardDynamicsDerivatives.into(), 1),
@@ -78,12 +77,12 @@ fn rates_are_the_matrices_times_the_direction() {
             .directional_derivative(query, &inputs, direction, &environment, &mut [&mut values], &mut [&mut found])
             .expect("regular");
         let mut plain = vec![0.0; states * n];
-        rows.compute(query, &inputs, &environment, &mut [&mut plain]).expect("regular");
+        batch.compute(query, &inputs, &environment, &mut [&mut plain]).expect("regular");
         assert_close(&values, &plain);
         let mut matrices: Vec<Vec<f64>> =
             derivatives.output_lengths(&model).map(|length| vec![0.0; states * length]).collect();
         let mut slices: Vec<&mut [f64]> = matrices.iter_mut().map(Vec::as_mut_slice).collect();
-        rows.compute(derivatives, &inputs, &environment, &mut slices).expect("regular");
+        batch.compute(derivatives, &inputs, &environment, &mut slices).expect("regular");
         let mut expected = vec![0.0; states * n];
         for (matrix, rate) in matrices[first..].iter().zip(rates.into_iter().flatten()) {
             for (k, (entry, row)) in expected.iter_mut().zip(matrix.chunks_exact(n)).enumerate() {

@@ -2,6 +2,7 @@
 #![allow(missing_docs)]
 
 use crate::common;
+use crate::ways::ways;
 
 use common::{compute, error, inputs, quantities, robots, state, tolerance};
 use mozzi::Model;
@@ -9,7 +10,7 @@ use mozzi::quantities::{
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsVjp, MassMatrix, Query,
 };
 use mozzi::scalar::Float;
-use mozzi_batch::{Batch, Compiled, InstructionSet, Layout, Number, compile};
+use mozzi_batch::{Batch, Compiled, Engine, Number, compile};
 
 /// The outputs at these states, by rows.
 fn by_rows(robot: &Compiled, query: Query, rows: &[[Vec<f64>; 3]]) -> Vec<Vec<f64>> {
@@ -26,10 +27,9 @@ fn by_rows(robot: &Compiled, query: Query, rows: &[[Vec<f64>; 3]]) -> Vec<Vec<f6
 }
 
 #[test]
-fn rows_and_blocks_of_any_number_of_states() {
+fn any_number_of_states() {
     for (name, model) in robots() {
-        let (n, nq, environment) = (model.n(), model.nq(), model.environment().into());
-        // compiled, and with nothing compiled: the batch's kernels
+        // compiled, and with nothing compiled: the kernels, as few states do not pay
         let queries = quantities(&model);
         for compiled in [&queries[..], &[]] {
             let robot = compile(&model, compiled).expect("its own frames").with_threads(2).expect("two threads");
@@ -48,14 +48,6 @@ fn rows_and_blocks_of_any_number_of_states() {
                     }
                 }
             }
-            let robot = robot.with_layout(Layout::Blocks);
-            let rows: Vec<f64> = (0..13).flat_map(|seed| state(&model, seed)[0].clone()).collect();
-            let blocks = robot.batch().to_blocks(&rows, nq);
-            let mut M = vec![0.0; blocks.len() / nq * n * n];
-            robot.batch().compute(MassMatrix, &[&blocks], &environment, &mut [&mut M]).expect("lengths");
-            let found = robot.batch().to_rows(&M, n * n, 13);
-            let expected = model.mass_matrix(&rows[12 * nq..]).expect("lengths");
-            assert!(error(&found[12 * n * n..], expected.as_slice()) < 1e-13, "{name}");
         }
     }
 }
@@ -84,31 +76,22 @@ fn any_number_of_states_on_one_thread_and_on_three() {
     }
 }
 
-/// The outputs of a batch at these states: tables in its layout, converted to rows.
+/// The outputs of a batch at these states.
 fn outputs<T: Number>(batch: &Batch<T>, query: Query, rows: &[[Vec<f64>; 3]]) -> Vec<Vec<T>> {
-    let (layout, model) = (batch.layout(), batch.model());
-    let count = query.declaration().inputs.len();
+    let (count, model) = (query.declaration().inputs.len(), batch.model());
     let table = |k: usize| -> Vec<T> {
         rows.iter().flat_map(|row| inputs(query, row)[k].iter().map(|&x| T::from_f64(x)).collect::<Vec<_>>()).collect()
     };
-    let blocks =
-        |table: &[T], width| if layout == Layout::Rows { table.to_vec() } else { batch.to_blocks(table, width) };
-    let lengths: Vec<usize> = query.input_lengths(model).collect();
-    let tables: Vec<Vec<T>> = (0..count).map(|k| blocks(&table(k), lengths[k])).collect();
-    let states = if layout == Layout::Rows { rows.len() } else { rows.len().next_multiple_of(batch.lanes()) };
+    let tables: Vec<Vec<T>> = (0..count).map(table).collect();
     let tables: Vec<&[T]> = tables.iter().map(Vec::as_slice).collect();
-    let widths: Vec<usize> = query.output_lengths(model).collect();
-    let mut found: Vec<Vec<T>> = widths.iter().map(|width| vec![T::from_f64(f64::NAN); states * width]).collect();
+    let widths = query.output_lengths(model);
+    let mut found: Vec<Vec<T>> = widths.map(|width| vec![T::from_f64(f64::NAN); rows.len() * width]).collect();
     let mut outputs: Vec<&mut [T]> = found.iter_mut().map(Vec::as_mut_slice).collect();
     batch.compute(query, &tables, &model.environment().into(), &mut outputs).expect("regular");
-    let of = |(table, width): (Vec<T>, usize)| match layout {
-        Layout::Rows => table,
-        Layout::Blocks => batch.to_rows(&table, width, rows.len()),
-    };
-    found.into_iter().zip(widths).map(of).collect()
+    found
 }
 
-fn same_as_the_kernels<T: Number + Float>(name: &str, model: &Model, set: InstructionSet) {
+fn same_as_the_kernels<T: Number + Float>(name: &str, model: &Model) {
     let queries: [Query; 5] = [
         InverseDynamics.into(),
         MassMatrix.into(),
@@ -117,35 +100,32 @@ fn same_as_the_kernels<T: Number + Float>(name: &str, model: &Model, set: Instru
         InverseDynamicsVjp.into(),
     ];
     let all: Vec<[Vec<f64>; 3]> = (0..77).map(|seed| state(model, seed)).collect();
-    let kernels = Batch::<T>::of(model).with_instruction_set(set).expect("available").with_threads(1).expect("one");
-    for layout in [Layout::Rows, Layout::Blocks] {
-        let batch = kernels.clone().with_layout(layout);
-        let compiled = batch.clone().compile(&queries).expect("no frames");
+    let ways = ways::<T>(model, &queries);
+    let ((_, kernels), codes) = ways.split_first().expect("the kernels");
+    for (way, code) in codes {
         for (query, states) in queries.iter().flat_map(|&query| STATES[..6].iter().map(move |&states| (query, states)))
         {
-            let (found, expected) = (outputs(&compiled, query, &all[..states]), outputs(&batch, query, &all[..states]));
+            assert!(matches!(code.engine(query), Engine::MachineCode(..)), "{}", code.engine(query));
+            let (found, expected) = (outputs(code, query, &all[..states]), outputs(kernels, query, &all[..states]));
             let wide = |x: &[T]| x.iter().map(|&x| x.into()).collect::<Vec<f64>>();
             for (found, expected) in found.iter().zip(&expected) {
                 let error = error(&wide(found), &wide(expected)) / T::EPSILON.into();
-                let name = format!("{name}, {}, {states} states, {layout:?}, {}", query.name(), set.name());
-                assert!(error < 1e4, "{name}, {} bytes: {error} ε", size_of::<T>());
+                assert!(error < 1e4, "{name}, {}, {states} states, {way}: {error} ε", query.name());
             }
         }
     }
 }
 
 #[test]
-fn every_register_number_type_layout_and_remainder() {
+fn every_shape_number_type_and_remainder() {
     // rows narrower than a register, as wide, and wider
     let open = |name: &str| mozzi_urdf::open(name).and_then(|robot| robot.build()).expect("an embedded robot");
     let floating = open("anymal").description().clone().floating().build().expect("sound");
     let robots =
         [("two links", open("two_link_planar")), ("ur5", open("ur5")), ("panda", open("panda")), ("anymal", floating)];
     for (name, model) in &robots {
-        for set in InstructionSet::available() {
-            same_as_the_kernels::<f64>(name, model, set);
-            same_as_the_kernels::<f32>(name, model, set);
-        }
+        same_as_the_kernels::<f64>(name, model);
+        same_as_the_kernels::<f32>(name, model);
     }
 }
 

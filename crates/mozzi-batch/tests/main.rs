@@ -10,4 +10,6 @@ mod machine_code_arrays;
 mod many_states;
 mod quantities_page;
 mod refused;
+mod rule;
 mod sticking;
+mod ways;

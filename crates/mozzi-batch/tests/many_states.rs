@@ -1,14 +1,16 @@
-//! Many states: threads and layouts, states that fail, both number types, simulation.
+//! Many states: threads, states that fail, both number types, simulation.
 #![allow(missing_docs)]
 
 use mozzi::quantities::{
-    CenterOfMassJacobian, ConstraintJacobian, ConstraintResidual, ForwardDynamics, ForwardDynamicsDerivatives,
-    GravityForces, InverseDynamics, MassMatrix, Query, Regressor, TaskSpaceDynamics,
+    CenterOfMassJacobian, ConstraintJacobian, ConstraintResidual, ForwardDynamics, GravityForces, InverseDynamics,
+    MassMatrix, Query, Regressor, TaskSpaceDynamics,
 };
 use mozzi::simulation::{Method, Options};
-use mozzi::testing::{Random, chain, floating_tree, four_bar, state, tree};
+use mozzi::testing::{Random, floating_tree, four_bar, state, tree};
 use mozzi::{Model, Task, TaskFrame};
-use mozzi_batch::{Batch, BatchEnvironment, InstructionSet, Layout, Number};
+use mozzi_batch::{Batch, BatchEnvironment, Number};
+
+use crate::ways::ways;
 
 /// Concatenated states.
 struct States {
@@ -38,69 +40,37 @@ fn numbers<T: Number>(list: &[f64]) -> Vec<T> {
     list.iter().map(|&x| T::from_f64(x)).collect()
 }
 
-/// ∂θ̈ of a long chain is computed one state after the other: the kernels' results to the bit.
-#[test]
-fn a_long_chain_is_computed_as_at_one_state() {
-    let model = chain(&tree(70, 40, 0));
-    let query = Query::from(ForwardDynamicsDerivatives);
-    assert!(query.is_faster_alone(&model) && !query.is_faster_alone(&tree(6, 3, 0)));
-    let (n, states, environment) = (model.n(), States::new(&model, 11), model.environment().into());
-    for set in [InstructionSet::Portable, Batch::<f64>::new(&model).instruction_set()] {
-        let batch = Batch::<f64>::new(&model).with_instruction_set(set).expect("of this machine");
-        let mut found = [n, n * n, n * n, n * n].map(|length| vec![0.0; 11 * length]);
-        let mut outputs = found.each_mut().map(Vec::as_mut_slice);
-        batch.compute(query, &[&states.theta, &states.dtheta, &states.x], &environment, &mut outputs).expect("regular");
-        for k in 0..11 {
-            let at = |x: &[f64]| x[k * n..][..n].to_vec();
-            let state = [at(&states.theta), at(&states.dtheta), at(&states.x)];
-            let state = [&state[0][..], &state[1], &state[2]];
-            let expected = model.compute(query, &state, &model.environment()).expect("regular");
-            for (found, expected) in found.iter().zip(&expected) {
-                assert_eq!(found[k * expected.len()..][..expected.len()], expected[..], "{set:?}, state {k}");
-            }
-        }
-    }
-}
-
 #[test]
 fn f32_forward_dynamics_undoes_inverse_dynamics() {
     let model = tree(6, 3, 0);
     let (states, environment) = (States::new(&model, 21), model.environment().into());
     let [q, v, a] = [&states.theta, &states.dtheta, &states.x].map(|x| numbers::<f32>(x));
-    for set in InstructionSet::available() {
-        let batch = Batch::<f32>::of(&model).with_instruction_set(set).unwrap();
+    for (way, batch) in ways::<f32>(&model, &[InverseDynamics.into(), ForwardDynamics.into()]) {
         let (mut tau, mut again) = (vec![0.0; a.len()], vec![0.0; a.len()]);
         batch.compute(InverseDynamics, &[&q, &v, &a], &environment, &mut [&mut tau]).unwrap();
         batch.compute(ForwardDynamics, &[&q, &v, &tau], &environment, &mut [&mut again]).unwrap();
         for (x, y) in a.iter().zip(&again) {
-            assert!((x - y).abs() < 2e-2, "{x} {y} on {}", set.name());
+            assert!((x - y).abs() < 2e-2, "{x} {y} by {way}");
         }
     }
 }
 
 #[test]
-fn threads_and_layouts_change_no_bit() {
+fn threads_change_no_bit() {
     for model in [tree(1, 7, 0), floating_tree(3, 6, 0)] {
-        let (count, nq, n) = (5003, model.nq(), model.n());
-        let (states, environment) = (States::new(&model, count), BatchEnvironment::from(model.environment()));
-        for set in InstructionSet::available() {
-            let batch = Batch::new(&model).with_instruction_set(set).unwrap();
-            let run = |batch: &Batch, wide: bool| {
-                let [q, v, a] = [(&states.theta, nq), (&states.dtheta, n), (&states.x, n)]
-                    .map(|(x, w)| if wide { batch.to_blocks(x, w) } else { x.clone() });
-                let queries: [Query; 3] = [InverseDynamics.into(), MassMatrix.into(), CenterOfMassJacobian.into()];
+        let (states, environment) = (States::new(&model, 5003), BatchEnvironment::from(model.environment()));
+        let queries: [Query; 3] = [InverseDynamics.into(), MassMatrix.into(), CenterOfMassJacobian.into()];
+        for (way, batch) in ways(&model, &queries) {
+            let run = |batch: &Batch| {
                 queries.map(|query| {
-                    let width = query.output_lengths(&model).sum();
-                    let mut found = vec![f64::NAN; v.len() / n * width];
-                    let inputs = &[&q[..], &v, &a][..query.declaration().inputs.len()];
+                    let mut found = vec![f64::NAN; 5003 * query.output_lengths(&model).sum::<usize>()];
+                    let inputs = &[&states.theta[..], &states.dtheta, &states.x][..query.declaration().inputs.len()];
                     batch.compute(query, inputs, &environment, &mut [&mut found]).unwrap();
-                    if wide { batch.to_rows(&found, width, count) } else { found }
+                    found
                 })
             };
-            let one = run(&batch.clone().with_threads(1).unwrap(), false);
-            assert!(one == run(&batch, false));
-            assert!(one == run(&batch.clone().with_threads(3).unwrap(), false));
-            assert!(one == run(&batch.clone().with_layout(Layout::Blocks), true));
+            let one = run(&batch.clone().with_threads(1).unwrap());
+            assert!(one == run(&batch) && one == run(&batch.clone().with_threads(3).unwrap()), "{way}");
         }
     }
 }
@@ -110,10 +80,9 @@ fn a_state_that_is_no_number_spoils_no_other() {
     let model = tree(1, 7, 0);
     let n = model.n();
     let (mut states, environment) = (States::new(&model, 40), BatchEnvironment::from(model.environment()));
-    // by a kernel, and by a program
     let queries: [Query; 2] = [ForwardDynamics.into(), Regressor.into()];
-    for (set, query) in InstructionSet::available().into_iter().flat_map(|set| queries.map(|query| (set, query))) {
-        let batch = Batch::new(&model).with_instruction_set(set).unwrap();
+    let all = ways(&model, &queries);
+    for (batch, query) in all.iter().flat_map(|(_, batch)| queries.map(|query| (batch, query))) {
         let width = query.output_lengths(&model).sum();
         let run = |states: &States| {
             let mut x = vec![0.0; 40 * width];
@@ -141,14 +110,13 @@ fn many_turns_are_reduced_exactly() {
         *x += 1e3 * (random.next() * 12.0).exp2() * 1e5;
     }
     let (n, environment) = (model.n(), model.environment());
-    for set in InstructionSet::available() {
-        let batch = Batch::new(&model).with_instruction_set(set).unwrap();
+    for (way, batch) in ways(&model, &[GravityForces.into()]) {
         let mut g = vec![0.0; 9 * n];
         batch.compute(GravityForces, &[&states.theta], &environment.into(), &mut [&mut g]).unwrap();
         for (theta, g) in states.theta.chunks(n).zip(g.chunks(n)) {
             let expected = model.gravity_forces(theta).unwrap();
             for (a, b) in g.iter().zip(expected.iter()) {
-                assert!((a - b).abs() <= 1e-12 * expected.amax(), "{a} {b} on {}", set.name());
+                assert!((a - b).abs() <= 1e-12 * expected.amax(), "{a} {b} by {way}");
             }
         }
     }
@@ -157,7 +125,7 @@ fn many_turns_are_reduced_exactly() {
 #[test]
 fn many_robots_move_as_each_alone() {
     for model in [tree(5, 3, 0), floating_tree(3, 3, 0), four_bar()] {
-        // robots without dry friction move together in registers
+        // robots without dry friction move together
         let mut robot = model.description().clone();
         robot.joints.iter_mut().for_each(|joint| joint.friction = 0.0);
         let model = robot.build().unwrap();
@@ -168,8 +136,7 @@ fn many_robots_move_as_each_alone() {
         let environment = BatchEnvironment::from(model.environment());
         let (duration, steps) = (0.02, 4);
         for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
-            for set in InstructionSet::available() {
-                let batch = Batch::new(&model).with_instruction_set(set).unwrap();
+            for (way, batch) in ways(&model, &[mozzi::simulation::forward_dynamics_of(&model)]) {
                 let (mut q, mut v) = (states.theta.clone(), states.dtheta.clone());
                 batch.simulate(&mut q, &mut v, &states.x, &environment, method, duration, steps).unwrap();
                 for k in [0, 17, 600] {
@@ -182,15 +149,14 @@ fn many_robots_move_as_each_alone() {
                     for (a, b) in
                         q[k * nq..][..nq].iter().chain(&v[k * n..][..n]).zip(end.theta.iter().chain(end.dtheta.iter()))
                     {
-                        assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{a} {b} on {}", set.name());
+                        assert!((a - b).abs() <= 1e-9 * (1.0 + b.abs()), "{a} {b} by {way}");
                     }
                 }
-                // in blocks, and on other threads: identical to the bit
-                let blocks = batch.clone().with_layout(Layout::Blocks).with_threads(2).unwrap();
-                let (mut q2, mut v2) = (blocks.to_blocks(&states.theta, nq), blocks.to_blocks(&states.dtheta, n));
-                let tau = blocks.to_blocks(&states.x, n);
-                blocks.simulate(&mut q2, &mut v2, &tau, &environment, method, duration, steps).unwrap();
-                assert!(q == blocks.to_rows(&q2, nq, count) && v == blocks.to_rows(&v2, n, count));
+                // on other threads: identical to the bit
+                let (mut q2, mut v2) = (states.theta.clone(), states.dtheta.clone());
+                let other = batch.clone().with_threads(2).unwrap();
+                other.simulate(&mut q2, &mut v2, &states.x, &environment, method, duration, steps).unwrap();
+                assert!(q == q2 && v == v2, "{way}");
             }
         }
     }
@@ -236,8 +202,7 @@ fn a_task_of_six_rows_and_one_that_cannot_be() {
     });
     let model = model.expect("one of a thousand trees reaches in all directions");
     let (n, states) = (model.n(), States::new(&model, 13));
-    for set in InstructionSet::available() {
-        let batch = Batch::new(&model).with_instruction_set(set).unwrap();
+    for (way, batch) in ways(&model, &[query(&model)]) {
         let (mut Lambda, mut eta) = (vec![0.0; 13 * 36], vec![0.0; 13 * 6]);
         let inputs: [&[f64]; 2] = [&states.theta, &states.dtheta];
         let environment = model.environment().into();
@@ -246,15 +211,17 @@ fn a_task_of_six_rows_and_one_that_cannot_be() {
             let (q, v) = (&states.theta[k * n..][..n], &states.dtheta[k * n..][..n]);
             let one = model.task_space_dynamics(q, v, task(&model), &model.environment()).unwrap();
             for (a, b) in Lambda[k * 36..][..36].iter().zip(one.Lambda.iter()) {
-                assert!((a - b).abs() <= 1e-6 * one.Lambda.amax(), "{a} {b} on {}", set.name());
+                assert!((a - b).abs() <= 1e-6 * one.Lambda.amax(), "{a} {b} by {way}");
             }
             for (a, b) in eta[k * 6..][..6].iter().zip(one.eta.iter()) {
-                assert!((a - b).abs() <= 1e-6 * (one.eta.amax() + one.Lambda.amax()), "{a} {b} on {}", set.name());
+                assert!((a - b).abs() <= 1e-6 * (one.eta.amax() + one.Lambda.amax()), "{a} {b} by {way}");
             }
         }
-        // three joints cannot move a frame in six directions
-        let short = tree(1, 3, 0);
-        let (states, batch) = (States::new(&short, 2), Batch::new(&short).with_instruction_set(set).unwrap());
+    }
+    // three joints cannot move a frame in six directions
+    let short = tree(1, 3, 0);
+    let states = States::new(&short, 2);
+    for (_, batch) in ways(&short, &[query(&short)]) {
         let (mut Lambda, mut eta) = (vec![0.0; 72], vec![0.0; 12]);
         let inputs: [&[f64]; 2] = [&states.theta, &states.dtheta];
         let environment = short.environment().into();

@@ -1,11 +1,7 @@
-//! `docs/quantities.md`: every quantity of the list, with its formula, inputs, outputs and the engine that computes
-//! arrays of it.
+//! `docs/quantities.md`: every quantity of the list, with its formula, inputs and outputs.
 #![allow(missing_docs)]
 
-use mozzi::quantities::{Declaration, Input, LIST, Of, Output, Query, Uses};
-use mozzi::testing::tree;
-use mozzi::{Task, TaskFrame};
-use mozzi_batch::{Batch, Engine, InstructionSet};
+use mozzi::quantities::{Declaration, Input, LIST, Of, Output, Uses};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -38,10 +34,9 @@ Each quantity works in each of these ways:
 | Python, one state and arrays | `model.quantity(…)`, `model.compile(\"quantity\")` |
 | C and C++, one state and many | `mozzi_quantity(model, workspace, …)`, `workspace.quantity(…)`, `mozzi_batch_compute` |
 
-Arrays go through one of two engines. *Registers*: the kernel is compiled for registers of 4 to 16 states. *Program*: the kernel is recorded for
-the robot, and the program runs as machine code, or in an interpreter over 32 states where there is none: on other processors, and where
-the code would be longer than 512 kB, as of large robots' regressors. Inertial parameters of each state always go through a
-program. A compiled quantity whose code would be longer (256 kB at one state) is computed by the kernels, and `engine` reports that.
+Arrays are computed by machine code made of the recorded program as soon as that pays (after about a thousand states of a quantity), else,
+and where there is none (other processors than x86-64 with AVX2, code longer than 512 kB with AVX2 or 2 MB with AVX-512), by the
+kernel state after state, on all cores. `engine` reports which; `compile` makes code at once, `kernels_only` never.
 Source text does not check pivots: its functions return them as further outputs.
 
 ## The list
@@ -78,28 +73,17 @@ fn environment(uses: Uses) -> String {
 
 #[test]
 fn page_of_quantities() {
-    let model = tree(1, 7, 0);
-    let portable = Batch::new(&model).with_instruction_set(InstructionSet::Portable).expect("everywhere");
-    let frame = model.end_effector().expect("named");
-    let engine = |index: usize| {
-        let query = match LIST[index].of {
-            Of::Task => Query::at(index).of_task(Task { frame, coordinates: TaskFrame::Body, rows: &[0] }),
-            _ => Query::at(index).of(frame),
-        };
-        if matches!(portable.engine(query), Engine::Kernels(_)) { "registers" } else { "program" }
-    };
     let mut page = String::from(HEAD);
-    page.push_str("| name | formula | inputs | of | environment | outputs | arrays |\n|---|---|---|---|---|---|---|\n");
-    for (index, declaration) in LIST.iter().enumerate() {
+    page.push_str("| name | formula | inputs | of | environment | outputs |\n|---|---|---|---|---|---|\n");
+    for declaration in LIST {
         let Declaration { name, formula, .. } = declaration;
         writeln!(
             page,
-            "| `{name}` | {formula} | {} | {} | {} | {} | {} |",
+            "| `{name}` | {formula} | {} | {} | {} | {} |",
             inputs(declaration.inputs),
             of(declaration),
             environment(declaration.uses),
-            outputs(declaration.outputs),
-            engine(index)
+            outputs(declaration.outputs)
         )
         .expect("a string");
     }

@@ -4,7 +4,10 @@ use mozzi::model::description::{Joint, JointKind};
 use mozzi::quantities::{ForwardDynamics, ForwardKinematics, InverseDynamics, MassMatrix, Query};
 use mozzi::testing::{floating_tree, mixed_tree, tree};
 use mozzi::{Description, Freedom, SE3, ScrewAxis, Solid, SpatialInertia};
-use mozzi_batch::{Batch, Error, InstructionSet, Layout};
+use mozzi_batch::{Batch, Error};
+use mozzi_codegen::Shape;
+
+use crate::ways::ways;
 
 fn text(result: Result<(), Error>) -> String {
     result.expect_err("wrong on purpose").to_string()
@@ -20,14 +23,6 @@ fn lengths() {
     assert_eq!(text(tau_of(&x, &x[..14])), "ddtheta has 14 numbers, expected 21 (3 states of 7)");
     let mut M_of = |batch: &Batch| batch.compute(MassMatrix, &[&x], &s, &mut [&mut M]);
     assert_eq!(text(M_of(&batch)), "M has 21 numbers, expected 147 (3 states of 49)");
-    let blocks = batch.clone().with_layout(Layout::Blocks);
-    if blocks.lanes() > 1 {
-        let expected = format!(
-            "theta has 21 numbers, expected a multiple of 7: 7 numbers a state, in whole blocks of {} states",
-            blocks.lanes()
-        );
-        assert_eq!(text(M_of(&blocks)), expected);
-    }
     // zero states give no error
     batch.compute(InverseDynamics, &[&[], &[], &[]], &s, &mut [&mut []]).unwrap();
 }
@@ -72,8 +67,7 @@ fn a_singular_state_names_its_joint() {
         .joint(joint("second", "between", "end"))
         .build()
         .unwrap();
-    for set in InstructionSet::available() {
-        let batch = Batch::new(&model).with_instruction_set(set).unwrap();
+    for (_, batch) in ways::<f64>(&model, &[ForwardDynamics.into()]) {
         let (x, mut y) = (vec![0.1; 10], vec![0.0; 10]);
         let environment = model.environment().into();
         let found = text(batch.compute(ForwardDynamics, &[&x, &x, &x], &environment, &mut [&mut y]));
@@ -82,7 +76,7 @@ fn a_singular_state_names_its_joint() {
 }
 
 #[test]
-fn frames_threads_and_registers() {
+fn frames_threads_and_shapes() {
     let (small, large) = (tree(1, 2, 0), tree(2, 12, 0));
     let batch = Batch::new(&small);
     let tip = large.end_effector().unwrap();
@@ -96,10 +90,7 @@ fn frames_threads_and_registers() {
         batch.clone().with_threads(0).map(drop).expect_err("none").to_string(),
         "0 threads could not be started: expected at least one"
     );
-    for set in [InstructionSet::Avx2, InstructionSet::Avx512] {
-        if !set.is_available() {
-            let found = text(batch.clone().with_instruction_set(set).map(drop));
-            assert!(found.starts_with(&format!("this machine has no {}; it has portable", set.name())), "{found}");
-        }
-    }
+    let found = text(batch.clone().with_shape(Shape::OneF64).map(drop));
+    assert!(found.contains("for 1 states at once is not for these numbers, or not for this processor"), "{found}");
+    assert!(Batch::<f32>::of(&small).with_shape(Shape::EightF64).is_err());
 }

@@ -3,7 +3,7 @@
 use mozzi::simulation::{ContactPoint, Contacts, Input, Method, Options, Plane, Simulation, torque};
 use mozzi::testing::{floating_tree, state, tree};
 use mozzi::{Model, Vec3, Wrench};
-use mozzi_batch::{Batch, BatchEnvironment, Layout};
+use mozzi_batch::{Batch, BatchEnvironment};
 use std::ops::ControlFlow;
 
 const ROBOTS: usize = 13;
@@ -46,11 +46,10 @@ fn many_robots_with_dry_friction_move_as_each_alone() {
                 assert_eq!(&q[k * nq..][..nq], alone.last().theta, "{}", method.name());
                 assert_eq!(&v[k * n..][..n], alone.last().dtheta, "{}", method.name());
             }
-            let blocks = batch.clone().with_layout(Layout::Blocks).with_threads(2).expect("threads");
-            let (mut q2, mut v2) = (blocks.to_blocks(&theta, nq), blocks.to_blocks(&dtheta, n));
-            let tau = blocks.to_blocks(&tau, n);
-            blocks.simulate(&mut q2, &mut v2, &tau, &environment, method, duration, steps).expect("motions");
-            assert!(q == blocks.to_rows(&q2, nq, ROBOTS) && v == blocks.to_rows(&v2, n, ROBOTS));
+            let two = batch.clone().with_threads(2).expect("threads");
+            let (mut q2, mut v2) = (theta.clone(), dtheta.clone());
+            two.simulate(&mut q2, &mut v2, &tau, &environment, method, duration, steps).expect("motions");
+            assert!(q == q2 && v == v2);
         }
         // single numbers: computed in double ones
         let single = |table: &[f64]| table.iter().map(|&x| x as f32).collect::<Vec<f32>>();

@@ -141,6 +141,24 @@ pub unsafe extern "C" fn mozzi_batch_new(
     })
 }
 
+/// A batch that makes no machine code.
+///
+/// # Safety
+/// See mozzi.h.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn mozzi_batch_kernels_only(
+    model: *const ModelHandle,
+    threads: usize,
+    batch: *mut *mut BatchHandle,
+) -> Status {
+    // SAFETY: as above.
+    guard(|| unsafe {
+        clear(batch)?;
+        let robot = borrow(model)?;
+        put(Prepared::new(robot, Batch::new(&robot.model).kernels_only(), threads)?, batch)
+    })
+}
+
 /// A batch with the machine code of a program.
 ///
 /// # Safety

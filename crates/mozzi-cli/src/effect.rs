@@ -13,7 +13,7 @@ struct Need {
 }
 
 const NEEDS: [Need; 9] = [
-    need("compute", &["out", "precision", "threads", "instruction-set", "gpu"], &["in"]),
+    need("compute", &["out", "precision", "threads", "kernels-only", "gpu"], &["in"]),
     need("ik", &["out"], &["in"]),
     need("identify", &["payload"], &["only payload"]),
     need("trajectory", &["position", "rpy", "quaternion", "deviation"], &["path screw", "path line"]),

@@ -1,6 +1,5 @@
 //! What `mozzi --version` says: the version, the commit, and what this build can do on this machine.
 
-use mozzi_batch::InstructionSet;
 use mozzi_codegen::Shape;
 
 /// The optional formats, and whether this build has them.
@@ -18,15 +17,13 @@ pub fn long() -> String {
     let commit = option_env!("MOZZI_COMMIT").unwrap_or("not recorded (not a released build)");
     let features: Vec<&str> = FEATURES.iter().filter(|(_, is_on)| *is_on).map(|(name, _)| *name).collect();
     let features = if features.is_empty() { "none".to_string() } else { features.join(", ") };
-    let sets: Vec<&str> = InstructionSet::available().into_iter().map(InstructionSet::name).collect();
     let mut compiled: Vec<&str> =
         Shape::ALL.into_iter().filter(|shape| shape.is_supported()).map(Shape::instruction_set).collect();
     compiled.sort_unstable();
     compiled.dedup();
     let compiled = if compiled.is_empty() { "not on this machine".to_string() } else { compiled.join(", ") };
     format!(
-        "{version}\ncommit: {commit}\nfeatures: {features}\ninstruction sets: {}\nmachine code: {compiled}\nfor: {} {}",
-        sets.join(", "),
+        "{version}\ncommit: {commit}\nfeatures: {features}\nmachine code: {compiled}\nfor: {} {}",
         std::env::consts::ARCH,
         std::env::consts::OS
     )

@@ -188,7 +188,7 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
     assert_ne!(mjcf["before"]["theta"], mjcf["after"]["theta"], "two actions, and it moves");
 
     let said = wrong["said"].as_str().expect("text");
-    assert!(said.contains("ur5.urdf:") && said.contains("8,393") && said.contains('─'), "{said}");
+    assert!(said.contains("ur5.urdf:") && said.contains("8,393") && said.contains('━'), "{said}");
     assert!(wrong["before"] == wrong["after"] && wrong["hidden"] == true, "the last robot stays");
 
     let theta = |k: usize| numbers(&drag["states"][k]["theta"]);

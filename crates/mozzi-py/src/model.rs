@@ -151,23 +151,33 @@ impl PyModel {
     }
 
     #[staticmethod]
-    fn _from_state(state: State, compiled: Vec<Asked>, threads: Option<usize>) -> PyResult<Self> {
-        let model = Self::built(from_state(state)?.build())?;
+    fn _from_state(
+        state: State,
+        compiled: Vec<Asked>,
+        threads: Option<usize>,
+        is_kernels_only: bool,
+    ) -> PyResult<Self> {
+        let mut model = Self::built(from_state(state)?.build())?;
+        model.0.is_kernels_only = is_kernels_only;
         if compiled.is_empty() { Ok(model) } else { model.compiled(compiled, threads) }
     }
 
     #[allow(clippy::type_complexity)] // what pickle wants
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (State, Vec<Asked>, Option<usize>))> {
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (State, Vec<Asked>, Option<usize>, bool))> {
         let rebuild = py.get_type::<PyModel>().getattr("_from_state")?;
         let (names, threads) = match &self.0.compiled {
             Some(machine) => (machine.names.clone(), machine.threads),
             None => (Vec::new(), None),
         };
-        Ok((rebuild, (to_state(self.0.model.description()), names, threads)))
+        Ok((rebuild, (to_state(self.0.model.description()), names, threads, self.0.is_kernels_only)))
     }
 
-    /// The same robot with these quantities as machine code, which is faster at one state and at many. The code is used
-    /// for float64, in the robot's own gravity, with its own parameters, its base at rest, touching nothing; everything
+    /// The same robot with these quantities as machine code at once, at one state and at many. Arrays of states get
+    /// machine code by themselves as soon as that pays; one state, and `simulate`, only by this method. It is used for
+    /// float64, in the robot's own gravity, with its own parameters, its base at rest, touching nothing; everything
     /// else is computed as before. `simulate` uses 'forward_dynamics', from one start and, if the torques are a
     /// function, from many.
     ///
@@ -203,7 +213,29 @@ impl PyModel {
         self.compiled(before.chain(asked).collect(), threads.map(|Threads(count)| count))
     }
 
-    /// What computes a quantity in the robot's own environment.
+    /// The same robot without machine code: arrays are computed state by state, by the kernels of one state, on all
+    /// cores. By default a quantity in arrays becomes machine code as soon as that pays, which changes the last digits
+    /// once; when that is depends on the sizes of this robot's calls alone.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///     Equal to this one.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi, numpy
+    /// >>> ur5 = mozzi.models.ur5().kernels_only()
+    /// >>> theta = numpy.zeros((2000, 6))
+    /// >>> bool((ur5.mass_matrix(theta)[7] == ur5.mass_matrix(theta[7])).all())
+    /// True
+    fn kernels_only(&self) -> Self {
+        let mut robot = Robot::new(self.0.model.clone());
+        robot.is_kernels_only = true;
+        PyModel(robot)
+    }
+
+    /// What computes a quantity in the robot's own environment, as far as calls have decided.
     ///
     /// Parameters
     /// ----------

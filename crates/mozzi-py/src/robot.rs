@@ -18,6 +18,8 @@ pub struct Robot {
     double: Mutex<Engines<f64>>,
     single: Mutex<Engines<f32>>,
     pub compiled: Option<Machine>,
+    /// Arrays are computed without machine code.
+    pub is_kernels_only: bool,
 }
 
 /// The quantities that are compiled to machine code.
@@ -42,6 +44,7 @@ impl Robot {
             double: Mutex::default(),
             single: Mutex::default(),
             compiled: None,
+            is_kernels_only: false,
         }
     }
 
@@ -77,6 +80,11 @@ impl Robot {
         Ok(())
     }
 
+    fn fresh_batch<T: Element>(&self) -> Batch<T> {
+        let batch = Batch::of(&self.model);
+        if self.is_kernels_only { batch.kernels_only() } else { batch }
+    }
+
     /// The frame of this name; without a name, the end effector.
     #[inline]
     pub fn frame(&self, name: Option<&str>) -> Result<FrameId, Error> {
@@ -97,7 +105,8 @@ impl Robot {
         }
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let count = threads.map(|Threads(count)| count).or_else(|| is_fork().then(cores));
-        let batch = T::batch(self);
+        // all share their machine code
+        let batch = engines.base.get_or_insert_with(|| T::batch(self)).clone();
         let batch =
             count.map_or(Ok(batch.clone()), |count| batch.with_threads(count)).map_err(|error| of_batch(error, &[]))?;
         engines.made.push((threads, batch.clone()));
@@ -114,12 +123,13 @@ fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 pub struct Engines<T: Element> {
     /// The process in which they were made: a fork has none of their threads.
     process: u32,
+    base: Option<Batch<T>>,
     made: Vec<(Option<Threads>, Batch<T>)>,
 }
 
 impl<T: Element> Default for Engines<T> {
     fn default() -> Self {
-        Engines { process: std::process::id(), made: Vec::new() }
+        Engines { process: std::process::id(), base: None, made: Vec::new() }
     }
 }
 
@@ -147,7 +157,10 @@ impl HasEngines for f64 {
         &robot.double
     }
     fn batch(robot: &Robot) -> Batch<f64> {
-        robot.compiled.as_ref().map_or_else(|| Batch::of(&robot.model), |machine| machine.code.batch().clone())
+        match &robot.compiled {
+            Some(machine) => machine.code.batch().clone(),
+            None => robot.fresh_batch(),
+        }
     }
     fn one_state(
         robot: &Robot,
@@ -165,7 +178,7 @@ impl HasEngines for f32 {
         &robot.single
     }
     fn batch(robot: &Robot) -> Batch<f32> {
-        Batch::of(&robot.model)
+        robot.fresh_batch()
     }
 }
 

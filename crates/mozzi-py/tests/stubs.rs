@@ -1,5 +1,5 @@
 //! Checks the package's text about the quantities against the list: their methods in `_mozzi.pyi`, and the named tuples
-//! of several results in `_quantities.py`. `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-py stubs`,
+//! of several results in `_quantities.py`. `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-py --test all stubs`,
 //! regenerates both.
 
 #[allow(dead_code)] // used by the library

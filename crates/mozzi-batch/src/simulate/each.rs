@@ -25,7 +25,7 @@ impl<T: Number> Batch<T> {
         for (what, found, width) in [("dtheta", dtheta.len(), n), ("theta", theta.len(), nq)] {
             let expected = states * width;
             if found != expected {
-                return Err(Error::WrongLength { what, found, expected, states, width, lanes: 1 });
+                return Err(Error::WrongLength { what, found, expected, states, width });
             }
         }
         self.one_by_one(states, |k| {

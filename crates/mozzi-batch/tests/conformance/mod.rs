@@ -7,12 +7,14 @@
 mod allocations;
 mod emitted;
 
+use crate::ways::ways;
+
 use allocations::allocations;
 use mozzi::model::description::{Closure, Constraint};
 use mozzi::quantities::*;
 use mozzi::testing::{closed, floating_mixed_tree, floating_tree, grippers, mixed_tree, state, tree, twist, wrench};
 use mozzi::{Dual, Environment, Error, FrameId, Freedom, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
-use mozzi_batch::{Batch, BatchEnvironment, Compiled, InstructionSet, Number, compile};
+use mozzi_batch::{Batch, BatchEnvironment, Compiled, Number, compile};
 use mozzi_codegen::{Arguments, record_quantity};
 use mozzi_oracle::{Given, SecondWay, second_way_of_f64};
 
@@ -222,14 +224,12 @@ fn conform<Q: SecondWay>(case: &Case) {
         close(&what("fused"), &outputs, &plain, wide);
     }
 
-    // arrays: registers of every kind, with a wrench, gravity and base motion for all and a wrench for each state
+    // arrays, with a wrench, gravity and base motion for all and a wrench for each state
     let tables: Vec<Vec<Vec<f64>>> = inputs.iter().map(|inputs| inputs.iter().map(|x| x.to_vec()).collect()).collect();
-    for set in InstructionSet::available() {
-        for parameters in [false, true] {
-            arrays::<f64>(case, query, &tables, set, parameters, wide);
-            if !query.declaration().divides {
-                arrays::<f32>(case, query, &tables, set, parameters, 2e-3);
-            }
+    for parameters in [false, true] {
+        arrays::<f64>(case, query, &tables, parameters, wide);
+        if !query.declaration().divides {
+            arrays::<f32>(case, query, &tables, parameters, 2e-3);
         }
     }
 
@@ -245,10 +245,9 @@ fn conform<Q: SecondWay>(case: &Case) {
         close(&what("program"), &found, expected, wide);
         one_by_machine_code(&what("machine code"), &compiled, query, inputs, expected, wide);
     }
-    for set in InstructionSet::available() {
-        let batch = Batch::new(model).with_instruction_set(set).expect("available").compile(&[query]).expect("frames");
+    for (_, batch) in ways::<f64>(model, &[query]) {
         for (found, expected) in in_arrays(&batch, query, &tables, &own.into()).iter().zip(&expected) {
-            close(&what(&format!("{} on {}", batch.engine(query), set.name())), found, expected, wide);
+            close(&what(&batch.engine(query).to_string()), found, expected, wide);
         }
     }
 }
@@ -272,14 +271,7 @@ fn one_by_machine_code(
 }
 
 /// Wrenches, gravity and, if requested, parameters of each state.
-fn arrays<T: Number>(
-    case: &Case,
-    query: Query,
-    tables: &[Vec<Vec<f64>>],
-    set: InstructionSet,
-    with_parameters: bool,
-    tolerance: f64,
-) {
+fn arrays<T: Number>(case: &Case, query: Query, tables: &[Vec<Vec<f64>>], with_parameters: bool, tolerance: f64) {
     let (model, count) = (case.model, tables.len());
     let numbers = |x: &[f64]| x.iter().map(|&x| T::from_f64(x)).collect::<Vec<T>>();
     let gravity: Vec<[f64; 3]> = (0..count).map(|k| [1.0 + k as f64, 2.0, -9.0]).collect();
@@ -294,21 +286,25 @@ fn arrays<T: Number>(
         gravity: Some(&g),
         parameters: with_parameters.then_some(&pi[..]),
     };
-    let batch = Batch::<T>::of(model).with_instruction_set(set).expect("available").with_threads(1).expect("one");
-    let way = format!(
-        "{} of {}, {} bytes a number on {}, parameters {with_parameters}",
-        query.name(),
-        case.name,
-        size_of::<T>(),
-        set.name()
-    );
-    for (k, found) in in_arrays(&batch, query, tables, &environment).iter().enumerate() {
-        let applied = [case.applied[0], case.applied[1], (case.frame, Wrench::from_array(wrenches[k]))];
-        let one = Environment { gravity: Vec3(gravity[k]), applied: &applied, ..case.environment() };
-        let robot = if with_parameters { &model.with_parameters(&parameters[k]) } else { model };
-        let inputs: Vec<&[f64]> = tables[k].iter().map(Vec::as_slice).collect();
-        let expected = robot.compute(query, &inputs, &one).expect("regular");
-        close(&way, found, &expected, tolerance);
+    let (name, size) = (query.name(), size_of::<T>());
+    // in machine code, too: as one call of many states would decide
+    let shapes = T::SHAPES.into_iter().filter(|shape| shape.is_supported());
+    let codes = shapes.map(|shape| {
+        let batch = Batch::<T>::of(model).with_shape(shape).expect("supported");
+        batch.for_job_of(&[query], &environment, usize::MAX).expect("its own frames")
+    });
+    for batch in codes.chain([Batch::<T>::of(model).kernels_only()]) {
+        let batch = batch.with_threads(1).expect("one");
+        let engine = batch.engine_in(query, &environment);
+        let way = format!("{name} of {}, {size} bytes a number, parameters {with_parameters}, {engine}", case.name);
+        for (k, found) in in_arrays(&batch, query, tables, &environment).iter().enumerate() {
+            let applied = [case.applied[0], case.applied[1], (case.frame, Wrench::from_array(wrenches[k]))];
+            let one = Environment { gravity: Vec3(gravity[k]), applied: &applied, ..case.environment() };
+            let robot = if with_parameters { &model.with_parameters(&parameters[k]) } else { model };
+            let inputs: Vec<&[f64]> = tables[k].iter().map(Vec::as_slice).collect();
+            let expected = robot.compute(query, &inputs, &one).expect("regular");
+            close(&way, found, &expected, tolerance);
+        }
     }
 }
 

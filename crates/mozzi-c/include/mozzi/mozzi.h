@@ -835,6 +835,8 @@ mozzi_status mozzi_compute(const mozzi_model *model, mozzi_workspace *workspace,
 
 /* On this many threads, 0 for all cores; with 1, the caller's thread does the work. */
 mozzi_status mozzi_batch_new(const mozzi_model *model, size_t threads, mozzi_batch **batch);
+/* Likewise, never by machine code: a batch makes it as soon as that pays, which changes the last digits once. */
+mozzi_status mozzi_batch_kernels_only(const mozzi_model *model, size_t threads, mozzi_batch **batch);
 mozzi_status mozzi_batch_with_program(const mozzi_program *program, size_t threads, mozzi_batch **batch);
 mozzi_status mozzi_batch_free(mozzi_batch *batch);
 

@@ -1416,6 +1416,10 @@ class Batch {
   static Result<Batch> create(const Model &model, std::size_t threads = 0) {
     return created([&](auto **b) { return mozzi_batch_new(model.get(), threads, b); });
   }
+  /// Likewise, never by machine code, which changes the last digits once.
+  static Result<Batch> kernels_only(const Model &model, std::size_t threads = 0) {
+    return created([&](auto **b) { return mozzi_batch_kernels_only(model.get(), threads, b); });
+  }
   static Result<Batch> create(const Program &program, std::size_t threads = 0) {
     return created([&](auto **b) { return mozzi_batch_with_program(program.get(), threads, b); });
   }

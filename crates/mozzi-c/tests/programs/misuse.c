@@ -271,6 +271,7 @@ static void many(mozzi_model *model, mozzi_model *other) {
     CHECK(theta != NULL && out != NULL);
     EXPECT(MOZZI_NULL, mozzi_batch_new(NULL, 1, &batch));
     EXPECT(MOZZI_NULL, mozzi_batch_new(model, 1, NULL));
+    EXPECT(MOZZI_NULL, mozzi_batch_kernels_only(NULL, 1, &batch));
     OK(mozzi_batch_new(model, 1, &batch));
     in.data = theta;
     in.length = states * n;

@@ -337,6 +337,10 @@ static void motions(void) {
         gravity_forces(model, many_theta, g);
         CHECK(tau_of_each[0] == 0 && tau_of_each[1] == 0);
         CHECK(difference(tau_of_each + 2, g, 2) < 1e-12);
+        OK(mozzi_batch_free(batch));
+        OK(mozzi_batch_kernels_only(model, 2, &batch));
+        OK(mozzi_batch_compute(batch, MOZZI_GRAVITY_FORCES, NULL, 2, &in, 1, &around, &out, 1));
+        CHECK(tau_of_each[2] == g[0] && tau_of_each[3] == g[1]);
     }
     OK(mozzi_batch_free(batch));
     OK(mozzi_program_free(program));

@@ -101,25 +101,28 @@ fn what_is_computed_with_is_chosen() {
         let summary = json(&[&fixed, more].concat());
         (summary, parse(&std::fs::read(&out).expect("a file")))
     };
-    let (summary, (shape, portable)) = run(&["--instruction-set", "portable", "--threads", "1"]);
+    let (summary, (shape, kernels)) = run(&["--kernels-only", "--threads", "1"]);
     assert_eq!(
         (shape.as_str(), summary["states"].as_u64(), summary["threads"].as_u64()),
         ("(300, 6)", Some(300), Some(1))
     );
-    assert_eq!((&summary["instruction_set"], &summary["arrays"][0]["name"]), (&"portable".into(), &"tau".into()));
+    let engine = "kernels: machine code was not requested";
+    assert_eq!((&summary["engine"], &summary["arrays"][0]["name"]), (&engine.into(), &"tau".into()));
     let bytes = std::fs::read(&out).expect("a file");
-    assert_eq!(run(&["--instruction-set", "portable", "--threads", "2"]).1.1, portable);
+    assert_eq!(run(&["--kernels-only", "--threads", "2"]).1.1, kernels);
+    let mut workspace = mozzi::fast::Workspace::new(&ur5);
     for state in 0..300 {
-        let [theta, dtheta, x] = [0, 1, 2].map(|k| states.at(k, state));
-        let tau = ur5.inverse_dynamics(theta, dtheta, x, &ur5.environment()).expect("τ");
-        assert_eq!(tau.as_slice(), &portable[state * 6..][..6], "bit for bit");
+        let (inputs, mut tau) = ([0, 1, 2].map(|k| states.at(k, state)), [0.0; 6]);
+        let (query, own) = (mozzi::quantities::InverseDynamics.into(), ur5.environment());
+        mozzi::fast::evaluate(&query, &ur5, &inputs, &own, &mut workspace, &mut [&mut tau]);
+        assert_eq!(tau, kernels[state * 6..][..6], "bit for bit");
     }
     let (summary, (_, single)) = run(&["--precision", "f32"]);
     assert_eq!((&summary["precision"], summary["states_with_nan"].as_u64()), (&"f32".into(), Some(0)));
     assert!(std::fs::read(&out).expect("a file").len() < bytes.len());
-    assert_close(&single, &portable, 1e-4 * largest(&portable));
+    assert_close(&single, &kernels, 1e-4 * largest(&kernels));
     let (_, (_, floating)) = run(&["--gravity", "0,0,0"]);
-    assert!(floating != portable);
+    assert!(floating != kernels);
 }
 
 #[test]
@@ -299,12 +302,6 @@ fn what_is_wrong_is_named() {
     }
     let (code, text) = said("mass-matrix", &all, &["--threads", "0"]);
     assert!(code == 1 && text.contains("0 threads could not be started: expected at least one"), "{text}");
-    if cfg!(target_arch = "x86_64") {
-        let (code, text) = said("mass-matrix", &all, &["--instruction-set", "neon"]);
-        assert!(code == 1 && text.contains("this machine has no neon; it has portable"), "{text}");
-    }
-    let (code, text) = said("mass-matrix", &all, &["--instruction-set", "sse"]);
-    assert!(code == 2 && text.contains("expected one of portable, neon, avx2, avx512"), "{text}");
     let (code, text) = complaint(&["compute", "ur5", "mass-matrix", "--in", &all, "--out", "-", "--json"]);
     assert!(code == 1 && text.contains("--json and --out - both write to standard output"), "{text}");
     let (code, text) = complaint(&["compute", "panda", "body-jacobian", "--in", &all, "--out", &out]);
@@ -319,10 +316,9 @@ fn bench_tells_this_machines_times() {
     let small =
         [&["bench", "two_link_planar", "--states", "70", "--rounds", "3", "--threads", "2"], &only[..]].concat();
     let table: Value = json(&small);
-    let sets = table["instruction_sets"].as_array().expect("a list").len();
     let timings = table["timings"].as_array().expect("a list");
-    // one state; f64 and f32 on each kind of registers, on one thread and on two
-    assert_eq!(timings.len(), 3 * (1 + 4 * sets));
+    // one state; all in a call in f64 and f32, on one thread and on two
+    assert_eq!(timings.len(), 3 * (1 + 4));
     for timing in timings {
         let number = |key: &str| timing[key].as_f64().expect("a number");
         assert!(0.0 < number("ns_least") && number("ns_least") <= number("ns_median"), "{timing}");
@@ -331,7 +327,9 @@ fn bench_tells_this_machines_times() {
     }
     assert!(!table["processor"].as_str().expect("a name").is_empty());
     let page = common::text(&small);
-    for word in ["one state", "portable f64", "portable f32", "body-jacobian", "on 2 threads", "70 states per batch"] {
+    for word in
+        ["one state", "arrays f64", "arrays f32", "kernels: ", "body-jacobian", "on 2 threads", "70 states per batch"]
+    {
         assert!(page.contains(word), "{word} in {page}");
     }
 }

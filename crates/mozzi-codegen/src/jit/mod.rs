@@ -27,8 +27,10 @@ use mozzi::scalar::Float;
 /// The reason why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// It was not requested.
+    /// It was not requested, or refused.
     NotAsked,
+    /// The calls so far had too few states to pay for it.
+    NotYet,
     /// The processor lacks the instructions, or is not x86-64.
     Processor,
     /// The program has a function without machine code (tanh), or more arrays than there are registers for their
@@ -44,6 +46,7 @@ impl std::fmt::Display for Refusal {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Refusal::NotAsked => "machine code was not requested",
+            Refusal::NotYet => "too few states so far to pay for machine code",
             Refusal::Processor => "the processor has not the instructions",
             Refusal::Program => "the program has a function without machine code, or too many arrays",
             Refusal::Long => "the code would be longer than the caches serve",

@@ -65,7 +65,6 @@ pub fn constrained_forward_dynamics<S: Scalar + From<C>, C: Scalar>(
 pub struct ConstrainedForwardDynamics;
 impl Quantity for ConstrainedForwardDynamics {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "constrained_forward_dynamics",
         "θ̈ and λ of τ = Mθ̈ + c + g + JᵀF + f + Aᵀλ with Aθ̈ + Ȧθ̇ = 0",

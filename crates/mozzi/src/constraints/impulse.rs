@@ -4,7 +4,7 @@ use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_fo
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
 use crate::model::{Model, Workspace};
-use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, Rare, THETA, VECTOR, output};
+use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
 
 /// The velocities θ̇⁺ after the constraints have begun to act, and their impulse Λ, m numbers, N s and N m s:
@@ -53,7 +53,6 @@ pub(crate) fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut Constr
 pub struct ConstraintImpulse;
 impl Quantity for ConstraintImpulse {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "constraint_impulse",
         "θ̇⁺ and Λ of M(θ̇⁺ − θ̇) = −AᵀΛ with Aθ̇⁺ = 0: the velocities after the constraints have begun to act",

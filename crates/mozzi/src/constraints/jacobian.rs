@@ -255,7 +255,6 @@ const ROWS: &[Dim] = &[Dim::Constraints];
 pub struct ConstraintJacobian;
 impl Quantity for ConstraintJacobian {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "constraint_jacobian",
         "A(θ) of the constraints A(θ)θ̇ = 0",
@@ -278,7 +277,6 @@ impl Kernel for ConstraintJacobian {
 pub struct ConstraintBias;
 impl Quantity for ConstraintBias {
     type Kernel = ConstraintJacobian;
-    type Registers = ConstraintJacobian;
     const DECLARATION: Declaration = Declaration::new(
         "constraint_bias",
         "Ȧ(θ, θ̇)θ̇ of the constraints: Aθ̈ + Ȧθ̇ = 0",
@@ -294,7 +292,6 @@ impl Quantity for ConstraintBias {
 pub struct ConstraintResidual;
 impl Quantity for ConstraintResidual {
     type Kernel = ConstraintJacobian;
-    type Registers = ConstraintJacobian;
     const DECLARATION: Declaration = Declaration::new(
         "constraint_residual",
         "φ(θ), by how much the positions violate the constraints",

@@ -4,7 +4,7 @@ use super::delassus::{ConstraintMemory, factor, solve};
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
 use crate::model::{Model, Workspace};
-use crate::quantity::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, Rare, THETA, output};
+use crate::quantity::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, THETA, output};
 use crate::scalar::Scalar;
 
 /// P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹, n × n by rows: Pτ = P(Mθ̈ + h) are the equations of motion without λ. Rank n − rank
@@ -52,7 +52,6 @@ pub fn constraint_projection<S: Scalar + From<C>, C: Scalar>(
 pub struct ConstraintProjection;
 impl Quantity for ConstraintProjection {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "constraint_projection",
         "P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹: Pτ = P(Mθ̈ + h)",

@@ -110,7 +110,6 @@ pub(super) fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
 pub struct BiasForces;
 impl Quantity for BiasForces {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "bias_forces",
         "h(θ, θ̇) = c + g, with JᵀF and the base's terms where they are given; without friction and springs",
@@ -132,7 +131,6 @@ impl Kernel for BiasForces {
 pub struct VelocityProduct;
 impl Quantity for VelocityProduct {
     type Kernel = BiasForces;
-    type Registers = BiasForces;
     const DECLARATION: Declaration = Declaration::new(
         "velocity_product",
         "c(θ, θ̇) = Cθ̇, the Coriolis and centripetal forces",
@@ -146,7 +144,6 @@ impl Quantity for VelocityProduct {
 pub struct GravityForces;
 impl Quantity for GravityForces {
     type Kernel = BiasForces;
-    type Registers = BiasForces;
     const DECLARATION: Declaration = Declaration::new(
         "gravity_forces",
         "g(θ), the joint forces that hold the robot against gravity",
@@ -162,7 +159,6 @@ impl Quantity for GravityForces {
 pub struct TipForces;
 impl Quantity for TipForces {
     type Kernel = BiasForces;
-    type Registers = BiasForces;
     const DECLARATION: Declaration = Declaration::new(
         "tip_forces",
         "JᵀF of the wrenches that frames apply to the environment",

@@ -5,7 +5,7 @@ use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, Rare, THETA, THREE, output, sized};
+use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, THREE, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
@@ -56,7 +56,6 @@ fn one_over_mass<S: Scalar + From<C>, C: Scalar>(model: &Model<C>) -> S {
 pub struct CenterOfMass;
 impl Quantity for CenterOfMass {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "center_of_mass",
         "c, the centre of mass of all that moves, in {s}",
@@ -78,7 +77,6 @@ impl Kernel for CenterOfMass {
 pub struct CenterOfMassVelocity;
 impl Quantity for CenterOfMassVelocity {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "center_of_mass_velocity",
         "ċ of the centre of mass, in the axes of {s}",
@@ -101,7 +99,6 @@ impl Kernel for CenterOfMassVelocity {
 pub struct CenterOfMassAcceleration;
 impl Quantity for CenterOfMassAcceleration {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "center_of_mass_acceleration",
         "c̈ of the centre of mass, in the axes of {s}",
@@ -124,7 +121,6 @@ impl Kernel for CenterOfMassAcceleration {
 pub struct CenterOfMassJacobian;
 impl Quantity for CenterOfMassJacobian {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "center_of_mass_jacobian",
         "J of the centre of mass: ċ = Jθ̇, in the axes of {s}",

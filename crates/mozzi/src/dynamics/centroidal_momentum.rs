@@ -3,7 +3,7 @@
 use super::center_of_mass::centroidal_frame;
 use super::momentum::{columns, rate_in_base};
 use crate::quantity::{
-    Call, DTHETA, Declaration, JACOBIAN, Kernel, Memory, Quantity, Rare, SIX, THETA, by_rows, output, sized,
+    Call, DTHETA, Declaration, JACOBIAN, Kernel, Memory, Quantity, SIX, THETA, by_rows, output, sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
@@ -13,7 +13,6 @@ use crate::spatial::Wrench;
 pub struct CentroidalMomentumMatrix;
 impl Quantity for CentroidalMomentumMatrix {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "centroidal_momentum_matrix",
         "A_G(θ), angular rows first: h_G = A_Gθ̇ is the momentum about the centre of mass",
@@ -38,7 +37,6 @@ impl Kernel for CentroidalMomentumMatrix {
 pub struct CentroidalMomentumBias;
 impl Quantity for CentroidalMomentumBias {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "centroidal_momentum_bias",
         "Ȧ_Gθ̇, of ḣ_G = A_Gθ̈ + Ȧ_Gθ̇",

@@ -85,7 +85,6 @@ pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
 pub struct CoriolisMatrix;
 impl Quantity for CoriolisMatrix {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "coriolis_matrix",
         "C(θ, θ̇) of the Christoffel symbols: c = Cθ̇, and Ṁ − 2C is skew-symmetric",
@@ -114,7 +113,6 @@ impl Kernel for CoriolisMatrix {
 pub struct MassMatrixRate;
 impl Quantity for MassMatrixRate {
     type Kernel = CoriolisMatrix;
-    type Registers = CoriolisMatrix;
     const DECLARATION: Declaration = Declaration::new(
         "mass_matrix_rate",
         "Ṁ(θ, θ̇) = C + Cᵀ",

@@ -70,7 +70,6 @@ pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
 pub struct KineticEnergy;
 impl Quantity for KineticEnergy {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "kinetic_energy",
         "½θ̇ᵀMθ̇, of all that moves",
@@ -93,7 +92,6 @@ impl Kernel for KineticEnergy {
 pub struct PotentialEnergy;
 impl Quantity for PotentialEnergy {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "potential_energy",
         "−Σ m gᵀp + Σ ½k(θ − θ₀)², p seen from the origin of {s}",

@@ -7,9 +7,7 @@ use super::vjp::{add_products_of, from_rest};
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
-use crate::quantity::{
-    Call, DTHETA, Declaration, FORCE, Kernel, Memory, Quantity, Rare, THETA, Uses, VECTOR, output, sized,
-};
+use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Memory, Quantity, THETA, Uses, VECTOR, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
@@ -65,7 +63,6 @@ pub fn energy_gradients<S: Scalar + From<C>, C: Scalar>(
 pub struct EnergyGradients;
 impl Quantity for EnergyGradients {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "energy_gradients",
         "∂𝒦/∂θ, ∂𝒦/∂θ̇ and ∂𝒫/∂θ of the kinetic and potential energy; by θ along the velocities",

@@ -5,9 +5,7 @@ use super::derivatives::derivatives;
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model, Workspace};
-use crate::quantity::{
-    CONSTANT_VECTOR, Call, D_FORCE, Declaration, Kernel, MATRIX, Quantity, Rare, THETA, Uses, output,
-};
+use crate::quantity::{CONSTANT_VECTOR, Call, D_FORCE, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 
@@ -86,7 +84,6 @@ fn at_rest<S: Scalar + From<C>, C: Scalar>(
 pub struct GravityForcesDerivative;
 impl Quantity for GravityForcesDerivative {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration =
         Declaration::new("gravity_forces_derivative", "∂g/∂θ", &[THETA], &[output("dg", MATRIX, D_FORCE)])
             .uses(Uses::GRAVITY);
@@ -104,7 +101,6 @@ impl Kernel for GravityForcesDerivative {
 pub struct TipForcesDerivative;
 impl Quantity for TipForcesDerivative {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "tip_forces_derivative",
         "∂(JᵀF)/∂θ of the wrenches that frames apply to the environment",
@@ -126,7 +122,6 @@ impl Kernel for TipForcesDerivative {
 pub struct MassMatrixProductDerivative;
 impl Quantity for MassMatrixProductDerivative {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "mass_matrix_product_derivative",
         "∂(M(θ)x)/∂θ for a constant x",

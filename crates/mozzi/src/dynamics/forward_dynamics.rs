@@ -204,7 +204,6 @@ fn accelerations<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
 pub struct ForwardDynamics;
 impl Quantity for ForwardDynamics {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "forward_dynamics",
         "θ̈ = M⁻¹(τ − c − g − JᵀF − f), the accelerations that joint forces produce",

@@ -5,7 +5,7 @@ use super::inverse_dynamics::{inverse_dynamics, newton_euler};
 use crate::linalg::{Vec3, ldlt};
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
-    ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, Rare, TAU, THETA, Uses, VECTOR, output, sized,
+    ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;
 
@@ -50,7 +50,6 @@ pub(crate) fn forward_dynamics_by_inverse_dynamics<S: Scalar + From<C>, C: Scala
 pub struct ForwardDynamicsByInverseDynamics;
 impl Quantity for ForwardDynamicsByInverseDynamics {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "forward_dynamics_by_inverse_dynamics",
         "θ̈ = M⁻¹(τ − c − g − JᵀF − f), M and h by calls of inverse dynamics",

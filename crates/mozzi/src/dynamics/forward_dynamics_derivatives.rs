@@ -83,7 +83,6 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 pub struct ForwardDynamicsDerivatives;
 impl Quantity for ForwardDynamicsDerivatives {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "forward_dynamics_derivatives",
         "θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹, row i of θ̈_i; by θ along the velocities",

@@ -125,7 +125,6 @@ fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Works
 pub struct ForwardDynamicsVjp;
 impl Quantity for ForwardDynamicsVjp {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "forward_dynamics_vjp",
         "xᵀ∂θ̈/∂θ, xᵀ∂θ̈/∂θ̇ and xᵀ∂θ̈/∂τ = M⁻¹x, the gradient of xᵀθ̈; by θ along the velocities",

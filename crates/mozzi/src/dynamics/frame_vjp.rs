@@ -12,8 +12,8 @@ use super::vjp::{add_products_of, from_rest};
 use crate::kinematics::joint_transforms;
 use crate::model::{FrameId, Model, Workspace};
 use crate::quantity::{
-    ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, Rare, THETA, VECTOR, output,
-    six, sized,
+    ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
+    sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
@@ -97,7 +97,6 @@ fn of_frame<S: Scalar + From<C>, C: Scalar>(
 pub struct FrameTwistVjp;
 impl Quantity for FrameTwistVjp {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "frame_twist_vjp",
         "wᵀ∂𝒱_b/∂θ along the velocities, and J_bᵀw: the gradient of wᵀ𝒱_b, the twist of a frame in its own coordinates",
@@ -121,7 +120,6 @@ impl Kernel for FrameTwistVjp {
 pub struct FrameAccelerationVjp;
 impl Quantity for FrameAccelerationVjp {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "frame_acceleration_vjp",
         "wᵀ∂a_b/∂θ along the velocities, wᵀ∂a_b/∂θ̇ and J_bᵀw: the gradient of wᵀa_b, a_b the acceleration of a frame",

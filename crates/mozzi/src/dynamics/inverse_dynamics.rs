@@ -143,7 +143,6 @@ pub(super) fn carrier_twist<S: Scalar + From<C>, C: Scalar>(
 pub struct InverseDynamics;
 impl Quantity for InverseDynamics {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "inverse_dynamics",
         "τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇), the joint forces of a motion",

@@ -41,7 +41,6 @@ pub fn inverse_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 pub struct InverseDynamicsDerivatives;
 impl Quantity for InverseDynamicsDerivatives {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "inverse_dynamics_derivatives",
         "∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M, row i of τ_i; by θ along the velocities",

@@ -70,7 +70,6 @@ pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
 pub struct InverseDynamicsVjp;
 impl Quantity for InverseDynamicsVjp {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "inverse_dynamics_vjp",
         "xᵀ∂τ/∂θ, xᵀ∂τ/∂θ̇ and xᵀ∂τ/∂θ̈ = Mx, the gradient of xᵀτ; by θ along the velocities",

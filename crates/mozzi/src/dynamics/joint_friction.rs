@@ -1,7 +1,7 @@
 //! Friction in the joints.
 
 use crate::model::Model;
-use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, Rare, VECTOR, output};
+use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, VECTOR, output};
 use crate::scalar::Scalar;
 
 /// f(θ̇) = d θ̇ + μ sgn θ̇ of joint j at its rate, with sgn 0 = 0. Sticking is not modelled: at rest Coulomb friction
@@ -19,7 +19,6 @@ pub fn joint_friction<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, j: usize
 pub struct JointFriction;
 impl Quantity for JointFriction {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "joint_friction",
         "f(θ̇) = dθ̇ + μ sgn θ̇ of each joint, with sgn 0 = 0",

@@ -48,7 +48,6 @@ pub(crate) fn composite_inertias<S: Scalar + From<C>, C: Scalar>(
 pub struct MassMatrix;
 impl Quantity for MassMatrix {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "mass_matrix",
         "M(θ), symmetric, with the rotors' inertia on its diagonal",

@@ -33,7 +33,6 @@ pub fn mass_matrix_inverse<S: Scalar + From<C>, C: Scalar>(
 pub struct MassMatrixInverse;
 impl Quantity for MassMatrixInverse {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "mass_matrix_inverse",
         "M(θ)⁻¹, the accelerations that a unit of each joint force produces",

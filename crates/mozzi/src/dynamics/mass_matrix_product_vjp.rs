@@ -7,7 +7,7 @@ use super::vjp::{add_products, from_rest, of_base};
 use crate::kinematics::joint_transforms;
 use crate::model::{Model, Workspace};
 use crate::quantity::{
-    ANY, CONSTANT_VECTOR, Call, DDTHETA, Declaration, Kernel, Memory, Quantity, Rare, THETA, VECTOR, output, sized,
+    ANY, CONSTANT_VECTOR, Call, DDTHETA, Declaration, Kernel, Memory, Quantity, THETA, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
@@ -49,7 +49,6 @@ pub fn mass_matrix_product_vjp<S: Scalar + From<C>, C: Scalar>(
 pub struct MassMatrixProductVjp;
 impl Quantity for MassMatrixProductVjp {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "mass_matrix_product_vjp",
         "xᵀ∂(M(θ)θ̈)/∂θ along the velocities, and Mx: the gradient of xᵀMθ̈",

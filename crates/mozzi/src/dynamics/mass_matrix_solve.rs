@@ -7,7 +7,7 @@ use super::spring_forces::add_spring_forces;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
-    ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, Rare, TAU, THETA, Uses, VECTOR, output, sized,
+    ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;
 
@@ -48,7 +48,6 @@ pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
 pub struct ForwardDynamicsByMassMatrix;
 impl Quantity for ForwardDynamicsByMassMatrix {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "forward_dynamics_by_mass_matrix",
         "θ̈ = M⁻¹(τ − c − g − JᵀF − f), by composite bodies and the factors of M along the tree",

@@ -6,7 +6,7 @@ use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, Rare, SIX, THETA, output};
+use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist, Wrench};
 
@@ -154,7 +154,6 @@ fn seen_from_space<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
 pub struct Momentum;
 impl Quantity for Momentum {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "momentum",
         "h, the momentum (angular, linear) of all that moves, about a point of {s}, in the axes of {s}",
@@ -177,7 +176,6 @@ impl Kernel for Momentum {
 pub struct MomentumRate;
 impl Quantity for MomentumRate {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "momentum_rate",
         "ḣ of the momentum about a fixed point of {s}, along a motion",

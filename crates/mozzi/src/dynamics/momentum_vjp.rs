@@ -10,8 +10,8 @@ use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
 use crate::model::{Model, Workspace};
 use crate::quantity::{
-    ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, Rare, THETA, VECTOR, output,
-    six, sized,
+    ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
+    sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
@@ -91,7 +91,6 @@ fn of_momentum<S: Scalar + From<C>, C: Scalar>(
 pub struct MomentumVjp;
 impl Quantity for MomentumVjp {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "momentum_vjp",
         "wᵀ∂h/∂θ along the velocities, and wᵀ∂h/∂θ̇: the gradient of wᵀh, h the momentum about a point of {s}",
@@ -116,7 +115,6 @@ impl Kernel for MomentumVjp {
 pub struct MomentumRateVjp;
 impl Quantity for MomentumRateVjp {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "momentum_rate_vjp",
         "wᵀ∂ḣ/∂θ along the velocities, wᵀ∂ḣ/∂θ̇ and wᵀ∂ḣ/∂θ̈: the gradient of wᵀḣ, ḣ the rate of the momentum",

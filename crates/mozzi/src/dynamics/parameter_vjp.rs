@@ -23,8 +23,8 @@ use crate::kinematics::{base_pose, joint_transforms};
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model, Workspace};
 use crate::quantity::{
-    ANY, CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Memory, Output, Quantity, Rare, TAU, THETA,
-    Uses, output, sized,
+    ANY, CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Memory, Output, Quantity, TAU, THETA, Uses,
+    output, sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist, Wrench};
@@ -162,7 +162,6 @@ const OUTPUTS: &[Output] = &[
 pub struct InverseDynamicsParameterVjp;
 impl Quantity for InverseDynamicsParameterVjp {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "inverse_dynamics_parameter_vjp",
         "xᵀ∂τ/∂π = xᵀY, and xᵀ∂τ by the joints' placements and axes and by gravity: the gradient of xᵀτ by the robot",
@@ -186,7 +185,6 @@ impl Kernel for InverseDynamicsParameterVjp {
 pub struct ForwardDynamicsParameterVjp;
 impl Quantity for ForwardDynamicsParameterVjp {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "forward_dynamics_parameter_vjp",
         "xᵀ∂θ̈/∂π, and xᵀ∂θ̈ by the joints' placements and axes and by gravity: the gradient of xᵀθ̈ by the robot",

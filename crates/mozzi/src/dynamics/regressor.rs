@@ -7,7 +7,7 @@ use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Spring, Workspace};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, Rare, THETA, Uses, output};
+use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, Uses, output};
 use crate::scalar::Scalar;
 use crate::spatial::{SpatialInertia, Twist};
 
@@ -174,7 +174,6 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
 pub struct Regressor;
 impl Quantity for Regressor {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "regressor",
         "Y(θ, θ̇, θ̈): τ = Yπ + JᵀF, with π the robot's parameters",
@@ -196,7 +195,6 @@ impl Kernel for Regressor {
 pub struct EnergyRegressors;
 impl Quantity for EnergyRegressors {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "energy_regressors",
         "the rows that give the kinetic and the potential energy of the parameters π",

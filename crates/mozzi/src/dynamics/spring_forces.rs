@@ -1,7 +1,7 @@
 //! Springs in the joints.
 
 use crate::model::Model;
-use crate::quantity::{Call, Declaration, FORCE, Kernel, Quantity, Rare, THETA, VECTOR, output};
+use crate::quantity::{Call, Declaration, FORCE, Kernel, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
 
 /// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: the forces that hold the joints against their springs. θ is not
@@ -41,7 +41,6 @@ pub(super) fn add_stiffness<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, th
 pub struct SpringForces;
 impl Quantity for SpringForces {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "spring_forces",
         "f_s(θ) = k(θ − θ₀) of each joint, θ not wrapped; kφ of a ball, φ its rotation vector",

@@ -84,7 +84,6 @@ fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
 pub struct TaskSpaceDynamics;
 impl Quantity for TaskSpaceDynamics {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "task_space_dynamics",
         "Λ and η of 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱), the dynamics as the rows of a frame's twist show them",

@@ -3,7 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model, Workspace};
-use crate::quantity::{Call, Declaration, Dim, Kernel, Of, Quantity, Rare, THETA, output, sized};
+use crate::quantity::{Call, Declaration, Dim, Kernel, Of, Quantity, THETA, output, sized};
 use crate::scalar::Scalar;
 
 /// The configuration `T_sb` of a frame {b} relative to {s} at the positions θ.
@@ -51,7 +51,6 @@ pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
 pub struct ForwardKinematics;
 impl Quantity for ForwardKinematics {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "forward_kinematics",
         "T_sb(θ), the configuration of a frame {b} seen from {s}",
@@ -73,7 +72,6 @@ impl Kernel for ForwardKinematics {
 pub struct FramePoses;
 impl Quantity for FramePoses {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "frame_poses",
         "T_sb(θ) of all frames, in the order of the model's list",

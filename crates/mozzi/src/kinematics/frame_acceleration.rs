@@ -1,7 +1,7 @@
 //! The classical acceleration of a frame.
 
 use crate::model::{FrameId, Model};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, Rare, SIX, THETA, output};
+use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
@@ -48,7 +48,6 @@ pub fn frame_acceleration<S: Scalar + From<C>, C: Scalar>(
 pub struct FrameAcceleration;
 impl Quantity for FrameAcceleration {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "frame_acceleration",
         "the classical acceleration of a frame, angular and of its origin, in its own coordinates",

@@ -116,7 +116,6 @@ pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, the
 pub struct SpaceJacobian;
 impl Quantity for SpaceJacobian {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "space_jacobian",
         "J_s(θ) of a frame: its twist in {s} is J_sθ̇, (ω, v)",
@@ -140,7 +139,6 @@ impl Kernel for SpaceJacobian {
 pub struct BodyJacobian;
 impl Quantity for BodyJacobian {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "body_jacobian",
         "J_b(θ) of a frame: its twist in its own coordinates is J_bθ̇, (ω, v)",

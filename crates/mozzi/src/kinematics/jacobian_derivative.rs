@@ -3,7 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model, Workspace};
-use crate::quantity::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, Rare, THETA, by_rows, output, sized};
+use crate::quantity::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 
@@ -105,7 +105,6 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
 pub struct SpaceJacobianDerivative;
 impl Quantity for SpaceJacobianDerivative {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "space_jacobian_derivative",
         "∂J_s/∂θ_j of a frame for each velocity j",
@@ -129,7 +128,6 @@ impl Kernel for SpaceJacobianDerivative {
 pub struct BodyJacobianDerivative;
 impl Quantity for BodyJacobianDerivative {
     type Kernel = Self;
-    type Registers = Rare;
     const DECLARATION: Declaration = Declaration::new(
         "body_jacobian_derivative",
         "∂J_b/∂θ_j of a frame for each velocity j",

@@ -99,7 +99,6 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
 pub struct SpaceJacobianRate;
 impl Quantity for SpaceJacobianRate {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "space_jacobian_rate",
         "dJ_s/dt of a frame",
@@ -123,7 +122,6 @@ impl Kernel for SpaceJacobianRate {
 pub struct BodyJacobianRate;
 impl Quantity for BodyJacobianRate {
     type Kernel = Self;
-    type Registers = Self;
     const DECLARATION: Declaration = Declaration::new(
         "body_jacobian_rate",
         "dJ_b/dt of a frame",

@@ -1,6 +1,6 @@
 //! A quantity with the frame, task or point that it refers to.
 
-use super::{ForwardDynamicsDerivatives, LIST, place_of};
+use super::{LIST, place_of};
 use crate::api::check_length;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame};
@@ -97,12 +97,6 @@ impl<'a> Query<'a> {
     ) -> impl Iterator<Item = usize> + use<'m, 'a, C> {
         let subject = self.subject;
         self.declaration().outputs.iter().map(move |output| output.length(model, &subject))
-    }
-
-    /// True if one state after the other is faster than several in a register: ∂θ̈ of a very long chain, whose matrices
-    /// are filled by articulated bodies at one state, and exceed the caches at several.
-    pub fn is_faster_alone<C: crate::Scalar>(&self, model: &Model<C>) -> bool {
-        *self == Query::from(ForwardDynamicsDerivatives) && model.structure.solves_by_bodies
     }
 
     /// Checks that this robot has the frame, that the rows are distinct, and that it has mass if the quantity needs it.

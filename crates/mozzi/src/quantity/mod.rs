@@ -20,8 +20,6 @@ use alloc::vec::Vec;
 pub trait Quantity: Copy + Send + Sync + 'static {
     /// The kernel that computes it.
     type Kernel: Kernel;
-    /// The code compiled for registers of several states: the kernel, or [`Rare`].
-    type Registers: Kernel;
     /// Everything else.
     const DECLARATION: Declaration;
 }
@@ -29,21 +27,8 @@ pub trait Quantity: Copy + Send + Sync + 'static {
 /// Code that computes one or several quantities on any number type. It is inlined into entry points compiled for an
 /// instruction set.
 pub trait Kernel: 'static {
-    /// Whether there is code for registers of several states.
-    const HAS_REGISTERS: bool = true;
-
     /// Fills the outputs.
     fn run<S: Scalar + From<C>, C: Scalar>(call: Call<S, C>);
-}
-
-/// No code for registers: many states of a rarely used quantity are computed by its recorded program.
-#[derive(Clone, Copy, Debug)]
-pub struct Rare;
-
-impl Kernel for Rare {
-    const HAS_REGISTERS: bool = false;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run<S: Scalar + From<C>, C: Scalar>(_call: Call<S, C>) {}
 }
 
 /// The most inputs of a kernel.

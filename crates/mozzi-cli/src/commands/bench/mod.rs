@@ -11,8 +11,8 @@ use crate::progress::Progress;
 use crate::quantity::{hyphenated, is_of_a_frame, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use clap::Args;
-use mozzi::quantities::{Declaration, Kernel, LIST, Of, Quantity, Query, Uses};
-use mozzi_batch::{Batch, InstructionSet};
+use mozzi::quantities::{Declaration, LIST, Of, Query, Uses};
+use mozzi_batch::Batch;
 use runs::{Data, Run, Subject};
 use std::time::Instant;
 use timing::{Report, Timing};
@@ -33,18 +33,10 @@ pub struct BenchArguments {
     /// Number of timed rounds; quantities alternate within a round
     #[arg(long, value_name = "R", default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Only this quantity; may be repeated [default: those that have a register kernel]
+    /// Only this quantity; may be repeated [default: those of positions, velocities and one further vector]
     #[arg(long, value_name = "NAME", value_parser = quantity())]
     quantity: Vec<Query<'static>>,
 }
-
-/// Does the quantity with this index in the list have a kernel on registers?
-const HAS_REGISTERS: &[bool] = {
-    macro_rules! flags {
-        ($($Q:ident)*) => { &[$(<mozzi::quantities::$Q as Quantity>::Registers::HAS_REGISTERS),*] };
-    }
-    mozzi::quantities!(flags)
-};
 
 pub fn run(arguments: &BenchArguments) -> Result<String> {
     let model = arguments.robot.load()?;
@@ -53,8 +45,11 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     }
     let tip = end_effector(&model);
     let is_empty = |quantity: &Declaration| quantity.is_constrained && model.constraint_rows() == 0;
-    let is_usual = |&index: &usize| HAS_REGISTERS[index] && LIST[index].of != Of::Task && !is_empty(&LIST[index]);
-    let usual = (0..LIST.len()).filter(is_usual).map(Query::at);
+    // the random states have no other numbers
+    let has_inputs =
+        |query: &Query| query.input_lengths(&model).all(|length| [model.nq(), model.n()].contains(&length));
+    let is_usual = |&index: &usize| LIST[index].of != Of::Task && !is_empty(&LIST[index]);
+    let usual = (0..LIST.len()).filter(is_usual).map(Query::at).filter(has_inputs);
     let asked = if arguments.quantity.is_empty() { usual.collect() } else { arguments.quantity.clone() };
     if asked.iter().any(|query| is_empty(query.declaration())) {
         needs_constraints(&model)?;
@@ -98,14 +93,14 @@ fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<T
             return Ok(None);
         }
         let (way, results) = (run.way, run.results()?);
-        if way.set.is_none() {
+        if way.is_one {
             reference = results.clone();
         }
         let difference = reference.iter().zip(&results).map(|(a, b)| difference(a, b)).fold(0.0, f64::max);
         if way.precision == "f64" && !(difference <= ROUNDING) {
-            let set = way.set.map_or("one state", InstructionSet::name);
+            let (title, engine) = (way.title(), run.engine());
             return Err(Failure::wrong(format!(
-                "{name} on {set} differs from one state by {difference:.1e} of its largest entry, expected rounding"
+                "{name}, {title} by {engine}, differs from one state by {difference:.1e} of its largest entry, expected rounding"
             )));
         }
         differences.push(difference);
@@ -124,7 +119,8 @@ fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<T
     let all = runs.iter().zip(times).zip(differences);
     let timings = all.map(|((run, mut times), difference)| {
         times.sort_by(f64::total_cmp);
-        Timing { name: name.clone(), way: run.way, least: times[0], median: times[times.len() / 2], difference }
+        let engine = run.engine();
+        Timing { name: name.clone(), engine, way: run.way, least: times[0], median: times[times.len() / 2], difference }
     });
     Ok(Some(timings.collect()))
 }

@@ -4,19 +4,14 @@ use super::timing::{Report, Timing, Way};
 use crate::json;
 use crate::text::{Page, about, table};
 use mozzi::Model;
-use mozzi_batch::InstructionSet;
 use serde_json::{Value, json};
-
-fn sets() -> Vec<&'static str> {
-    InstructionSet::available().into_iter().map(InstructionSet::name).collect()
-}
 
 pub fn object(model: &Model, report: &Report) -> String {
     let entry = |timing: &Timing| {
         json!({
             "quantity": timing.name,
-            "instruction_set": timing.way.set.map(InstructionSet::name),
-            "one_state": timing.way.set.is_none(),
+            "engine": timing.engine,
+            "one_state": timing.way.is_one,
             "precision": timing.way.precision,
             "threads": timing.way.threads,
             "ns_least": timing.least,
@@ -28,7 +23,7 @@ pub fn object(model: &Model, report: &Report) -> String {
     json::print(&json::of_robot(
         model,
         json!({
-            "processor": report.processor, "instruction_sets": sets(), "states": report.states,
+            "processor": report.processor, "states": report.states,
             "rounds": report.rounds, "complete": report.complete, "timings": report.timings.iter().map(entry).collect::<Value>(),
         }),
     ))
@@ -38,7 +33,7 @@ pub fn page(model: &Model, report: &Report) -> String {
     let Report { processor, states, rounds, threads, timings, .. } = report;
     let mut page = Page::default();
     page.line(format!("{}: {} positions, {} velocities", model.description().name, model.nq(), model.n()));
-    page.line(format!("{processor}; {}; at most {threads} threads", sets().join(", ")));
+    page.line(format!("{processor}; at most {threads} threads"));
     page.line(format!("{states} states per batch; least / median of {rounds} alternating rounds"));
     let time = |timing: &Timing| format!("{} / {}", digits(timing.least), digits(timing.median));
     let rate = |timing: &Timing| format!("{} / {}", digits(1e3 / timing.least), digits(1e3 / timing.median));
@@ -48,6 +43,8 @@ pub fn page(model: &Model, report: &Report) -> String {
         let title = format!("millions of states per second, on {threads} threads");
         page.title(&title).lines(&grid(timings, |way| way.threads > 1, rate));
     }
+    let engine = |timing: &Timing| timing.engine.clone();
+    page.title("computed by").lines(&grid(timings, one_thread, engine));
     let error = |timing: &Timing| about(timing.difference);
     page.title("largest difference from one state, relative to the largest entry")
         .lines(&grid(timings, one_thread, error));
@@ -60,7 +57,7 @@ fn grid(timings: &[Timing], which: impl Fn(Way) -> bool, cell: impl Fn(&Timing) 
     let mut head = vec![String::new()];
     for timing in timings.iter().filter(|timing| which(timing.way)) {
         let (way, name) = (timing.way, timing.name.clone());
-        let title = way.set.map_or("one state".to_string(), |set| format!("{} {}", set.name(), way.precision));
+        let title = way.title();
         if !head.contains(&title) {
             head.push(title);
         }

@@ -8,7 +8,7 @@ use crate::tables::results::arrays;
 use mozzi::quantities::{Declaration, MOST_INPUTS, MOST_OUTPUTS, Query};
 use mozzi::random::Random;
 use mozzi::{Environment, FrameId, Model, Wrench, fast};
-use mozzi_batch::{Batch, BatchEnvironment, InstructionSet};
+use mozzi_batch::{Batch, BatchEnvironment};
 use std::hint::black_box;
 
 /// States that are computed one by one.
@@ -57,6 +57,7 @@ pub struct Run<'a> {
     pub way: Way,
     pub states: usize,
     compute: Compute<'a>,
+    engine: Box<dyn Fn() -> String + 'a>,
 }
 
 /// A run; returns the outputs as f64 if its argument is `true`.
@@ -65,6 +66,11 @@ type Compute<'a> = Box<dyn FnMut(bool) -> Result<Vec<Vec<f64>>> + 'a>;
 impl Run<'_> {
     pub fn run(&mut self) -> Result<()> {
         (self.compute)(false).map(drop)
+    }
+
+    /// What computed the last run.
+    pub fn engine(&self) -> String {
+        (self.engine)()
     }
 
     /// All outputs.
@@ -82,16 +88,14 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// One state at a time, then each kind of registers in each precision, on one thread and on several.
+    /// One state at a time, then all in a call in each precision, on one thread and on several.
     pub fn runs(self, threads: usize, data: &'a Data<f64>, single: &'a Data<f32>) -> Result<Vec<Run<'a>>> {
         let mut runs = vec![self.one_by_one(data)];
         let mut counts = vec![1, threads];
         counts.dedup();
         for threads in counts {
-            for set in InstructionSet::available() {
-                runs.push(self.at_once(set, threads, data)?);
-                runs.push(self.at_once(set, threads, single)?);
-            }
+            runs.push(self.at_once(threads, data)?);
+            runs.push(self.at_once(threads, single)?);
         }
         Ok(runs)
     }
@@ -125,12 +129,19 @@ impl<'a> Subject<'a> {
             }
             Ok(if is_asked { to_f64(&results) } else { Vec::new() })
         });
-        Run { way: Way { set: None, precision: f64::NAME, threads: 1 }, states: count, compute }
+        let instructions = fast::Workspace::new(model).instruction_set();
+        let engine = Box::new(move || format!("kernel ({instructions})"));
+        Run { way: Way { is_one: true, precision: f64::NAME, threads: 1 }, states: count, compute, engine }
     }
 
-    fn at_once<T: Precision>(self, set: InstructionSet, threads: usize, data: &'a Data<T>) -> Result<Run<'a>> {
+    fn at_once<T: Precision>(self, threads: usize, data: &'a Data<T>) -> Result<Run<'a>> {
         let Subject { model, query, tip } = self;
-        let batch = Batch::<T>::of(model).with_instruction_set(set)?.with_threads(threads)?;
+        let batch = Batch::<T>::of(model).with_threads(threads)?;
+        let shared = batch.clone();
+        let engine = Box::new(move || {
+            let wrenches: Vec<(FrameId, &[T])> = tip.map(|tip| (tip, &data.wrenches[..])).into_iter().collect();
+            shared.engine_in(query, &BatchEnvironment::from(model.environment()).with_wrenches(&wrenches)).to_string()
+        });
         let mut results: Vec<Array<T>> = arrays(query, model, data.states());
         let compute: Compute = Box::new(move |is_asked| {
             let wrenches: Vec<(FrameId, &[T])> = tip.map(|tip| (tip, &data.wrenches[..])).into_iter().collect();
@@ -139,7 +150,7 @@ impl<'a> Subject<'a> {
             batch.compute(query, &data.inputs(query.declaration()), &environment, &mut outputs)?;
             Ok(if is_asked { to_f64(&results) } else { Vec::new() })
         });
-        Ok(Run { way: Way { set: Some(set), precision: T::NAME, threads }, states: data.states(), compute })
+        Ok(Run { way: Way { is_one: false, precision: T::NAME, threads }, states: data.states(), compute, engine })
     }
 }
 

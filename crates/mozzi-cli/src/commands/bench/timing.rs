@@ -1,19 +1,26 @@
 //! The timed computations, and their times.
 
-use mozzi_batch::InstructionSet;
-
 /// How a quantity is computed.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Way {
-    /// None: one state at a time.
-    pub set: Option<InstructionSet>,
+    /// One state in a call, or all.
+    pub is_one: bool,
     pub precision: &'static str,
     pub threads: usize,
+}
+
+impl Way {
+    /// Its column.
+    pub fn title(self) -> String {
+        if self.is_one { "one state".to_string() } else { format!("arrays {}", self.precision) }
+    }
 }
 
 /// Nanoseconds per state, and the largest difference from one state, relative to the largest entry.
 pub struct Timing {
     pub name: String,
+    /// What computed it.
+    pub engine: String,
     pub way: Way,
     pub least: f64,
     pub median: f64,

@@ -14,7 +14,7 @@ use crate::{interrupt, json};
 use clap::Args;
 use mozzi::quantities::Query;
 use mozzi::{Environment, FrameId, Model};
-use mozzi_batch::{Batch, BatchEnvironment, Error, InstructionSet};
+use mozzi_batch::{Batch, BatchEnvironment, Error};
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};
 
@@ -38,17 +38,12 @@ pub struct TableArguments {
     /// Largest number of threads [default: one per core]
     #[arg(long, value_name = "K")]
     threads: Option<usize>,
-    /// Instruction set: portable, neon, avx2 or avx512 [default: the widest that the machine has]
-    #[arg(long, value_name = "NAME", value_parser = instruction_set)]
-    instruction_set: Option<InstructionSet>,
+    /// Make no machine code: the numbers are those at one state, to the bit
+    #[arg(long)]
+    kernels_only: bool,
     /// Compute on the first NVIDIA GPU, by NVRTC (docs/gpu-guide.md)
-    #[arg(long, conflicts_with_all = ["threads", "instruction_set"])]
+    #[arg(long, conflicts_with_all = ["threads", "kernels_only"])]
     pub gpu: bool,
-}
-
-fn instruction_set(name: &str) -> Result<InstructionSet, String> {
-    let names = InstructionSet::ALL.map(InstructionSet::name).join(", ");
-    InstructionSet::ALL.into_iter().find(|set| set.name() == name).ok_or(format!("expected one of {names}"))
 }
 
 /// A computation at all states of a file.
@@ -79,8 +74,8 @@ impl Job<'_> {
         if let Some(threads) = arguments.threads {
             batch = batch.with_threads(threads)?;
         }
-        if let Some(set) = arguments.instruction_set {
-            batch = batch.with_instruction_set(set)?;
+        if arguments.kernels_only {
+            batch = batch.kernels_only();
         }
         // before all states are read, too
         let kernel = if arguments.gpu { Some(gpu::kernel::<T>(query, model)?) } else { None };
@@ -99,9 +94,18 @@ impl Job<'_> {
         if robot.end_effector.is_some() && !is_of_a_frame(query) && !has_tip {
             return Err(Failure::wrong(format!("--frame has no effect: {file} has no wrench of that frame")));
         }
+        // the states are computed in pieces: by one engine
+        let wrenches: Vec<(FrameId, &[T])> =
+            states.wrenches.iter().map(|(frame, table)| (*frame, &table[..])).collect();
+        let (gravity, parameters) = (states.gravity.as_deref(), states.parameters.as_deref());
+        let around = BatchEnvironment { environment, wrenches: &wrenches, gravity, parameters };
+        let start = Instant::now();
+        if kernel.is_none() {
+            batch = batch.for_job_of(&[query], &around, states.samples.count)?;
+        }
         let (results, seconds) = match &kernel {
             Some(kernel) => gpu::compute(kernel, query, model, &states)?,
-            None => compute(&batch, query, &states, environment)?,
+            None => compute(&batch, query, &states, &around).map(|results| (results, start.elapsed().as_secs_f64()))?,
         };
         let (count, all) = (results.first().map_or(0, |array| array.shape[0]), states.samples.count);
         let nan = nan(&results, count);
@@ -112,9 +116,9 @@ impl Job<'_> {
             None if robot.json => json::print(&object(query, model, &states, &results)),
             _ => results::write(output.unwrap_or("-"), query, model, &states, &results)?,
         };
-        let (registers, threads) = match &kernel {
-            Some(kernel) => (kernel.device().name(), 1),
-            None => (batch.instruction_set().name(), batch.threads().min(count.max(1))),
+        let (engine, threads) = match &kernel {
+            Some(kernel) => (kernel.device().name().to_string(), 1),
+            None => (batch.engine_in(query, &around).to_string(), batch.threads().min(count.max(1))),
         };
         let rate = count as f64 / seconds.max(1e-9);
         let text = match output {
@@ -126,7 +130,7 @@ impl Job<'_> {
                     json!({
                         "quantity": hyphenated(query.name()), "in": file, "out": output, "arrays": arrays, "states": count,
                         "complete": count == all, "states_with_nan": nan, "seconds": seconds, "states_per_second": rate,
-                        "precision": T::NAME, "instruction_set": registers, "threads": threads,
+                        "precision": T::NAME, "engine": engine, "threads": threads,
                     }),
                 ))
             }
@@ -142,7 +146,7 @@ impl Job<'_> {
                 };
                 let place = output.filter(|file| *file != "-").unwrap_or("standard output");
                 failure::write(&format!(
-                    "{count} states in {seconds:.3} s, {rate:.3e} states/s ({}, {registers}, {of_threads}): {} in {place}\n",
+                    "{count} states in {seconds:.3} s, {rate:.3e} states/s ({}, {engine}, {of_threads}): {} in {place}\n",
                     T::NAME,
                     arrays.join(", "),
                 ));
@@ -157,28 +161,28 @@ impl Job<'_> {
     }
 }
 
-/// The results and the computing time in seconds; after Ctrl-C, of the states computed so far.
+/// The results; after Ctrl-C, of the states computed so far.
 fn compute<T: Precision>(
     batch: &Batch<T>,
     query: Query,
     states: &States<T>,
-    environment: Environment,
-) -> Result<(Vec<Array<T>>, f64)> {
+    around: &BatchEnvironment<T>,
+) -> Result<Vec<Array<T>>> {
     let count = states.samples.count;
     let mut results = results::arrays::<T>(query, batch.model(), count);
     interrupt::listen();
-    let (progress, start) = (Progress::new(hyphenated(query.name()), count, "states"), Instant::now());
+    let progress = Progress::new(hyphenated(query.name()), count, "states");
     let (mut first, mut piece) = (0, FIRST);
     while first < count && !interrupt::asked() {
         let (begin, these) = (Instant::now(), piece.min(count - first));
         let inputs: Vec<&[T]> = states.inputs.iter().map(|table| part(table, count, first, these)).collect();
         let wrenches: Vec<(FrameId, &[T])> =
-            states.wrenches.iter().map(|(frame, table)| (*frame, part(table, count, first, these))).collect();
+            around.wrenches.iter().map(|&(frame, table)| (frame, part(table, count, first, these))).collect();
         let environment = BatchEnvironment {
-            environment,
+            environment: around.environment,
             wrenches: &wrenches,
-            gravity: states.gravity.as_deref().map(|table| part(table, count, first, these)),
-            parameters: states.parameters.as_deref().map(|table| part(table, count, first, these)),
+            gravity: around.gravity.map(|table| part(table, count, first, these)),
+            parameters: around.parameters.map(|table| part(table, count, first, these)),
         };
         let mut outputs: Vec<&mut [T]> = results
             .iter_mut()
@@ -201,9 +205,8 @@ fn compute<T: Precision>(
             _ => piece,
         };
     }
-    let seconds = start.elapsed().as_secs_f64();
     results.iter_mut().for_each(|array| array.truncate(first));
-    Ok((results, seconds))
+    Ok(results)
 }
 
 /// A range of states from a table with `count` states.
