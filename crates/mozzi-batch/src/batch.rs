@@ -118,6 +118,10 @@ impl<T: Number> Batch<T> {
         &self.threads
     }
 
+    pub(crate) fn programs(&self) -> &Programs {
+        &self.programs
+    }
+
     pub(crate) fn pool(&self) -> &Pool {
         &self.pool
     }
@@ -164,11 +168,13 @@ impl<T: Number> Batch<T> {
         let entry = self.code(&query, &arguments, states)?;
         let errors = match entry.as_ref().and_then(|entry| entry.made()) {
             Some(Ok(code)) => {
-                let constants = request.constants(&arguments);
+                let own = declaration.inputs.iter().map(|_| None);
+                let given: Vec<Option<Vec<f64>>> = own.chain(request.constants(&arguments)).collect();
+                let recompute = |chunk: &mut Chunk<T>, state: usize| chunk.recompute(&request, state);
                 self.threads.map(
                     chunks,
                     || self.pool.lend::<code::Worker<T>>(),
-                    |lent, chunk| code::run(code, &constants, &request, lent.get(code::Worker::default), chunk),
+                    |lent, chunk| code::run(code, &given, &recompute, lent.get(code::Worker::default), chunk),
                 )
             }
             _ => self.threads.map(
@@ -184,7 +190,12 @@ impl<T: Number> Batch<T> {
     }
 
     /// The machine code for a call of so many states, made now if it pays; `None` if the kernels compute it.
-    fn code(&self, query: &Query, arguments: &Arguments, states: usize) -> Result<Option<Arc<Entry>>, Error> {
+    pub(crate) fn code(
+        &self,
+        query: &Query,
+        arguments: &Arguments,
+        states: usize,
+    ) -> Result<Option<Arc<Entry>>, Error> {
         let Ok(shape) = self.shape else { return Ok(None) };
         let entry = self.programs.entry(query, arguments, false);
         let made = match entry.made() {
@@ -263,7 +274,7 @@ impl<T: Number> Batch<T> {
 }
 
 /// Cuts the tables into pieces for the cache, and for the threads.
-fn cut<'a, T: Number>(
+pub(crate) fn cut<'a, T: Number>(
     states: usize,
     inputs: &'a [Table<'a, T>],
     mut outputs: Fixed<TableMut<'a, T>>,

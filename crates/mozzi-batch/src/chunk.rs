@@ -52,9 +52,12 @@ impl<T: Number> Chunk<'_, T> {
     }
 }
 
-/// An array with room for the outputs of any quantity, without heap memory.
+/// The most tables of outputs: values, and their derivatives along a direction.
+pub(crate) const MOST_TABLES: usize = 2 * MOST_OUTPUTS;
+
+/// An array with room for the outputs of any quantity and their derivatives, without heap memory.
 pub(crate) struct Fixed<X> {
-    all: [X; MOST_OUTPUTS],
+    all: [X; MOST_TABLES],
     count: usize,
 }
 

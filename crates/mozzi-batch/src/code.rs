@@ -1,14 +1,10 @@
 //! Many states by machine code, which reads and writes the rows of the tables itself.
 
 use crate::Number;
-use crate::chunk::{Chunk, Table};
-use crate::request::Request;
-use mozzi::Model;
+use crate::chunk::{Chunk, MOST_TABLES, Table};
 use mozzi::least_is_clear;
-use mozzi::quantities::{MOST_OUTPUTS, Query};
-use mozzi_codegen::{
-    Arguments, Extent, Form, Kernel, MOST_ARRAYS, Refusal, Shape, is_too_long, pivot_names, record_quantity,
-};
+use mozzi::quantities::Query;
+use mozzi_codegen::{Extent, Form, Kernel, MOST_ARRAYS, Program, Refusal, Shape, pivot_names};
 use std::sync::Arc;
 
 /// Registers of states in a call of the code; then their angles and pivots are tested.
@@ -29,24 +25,15 @@ pub(crate) struct Code {
 }
 
 impl Code {
-    /// Records the quantity's program and makes the code.
+    /// The code of a quantity's program.
     ///
     /// # Errors
-    /// The outer one if the frame is missing or belongs to another model, the inner one if there is no code.
-    pub fn new(
-        model: &Model,
-        query: Query,
-        arguments: Arguments,
-        shape: Shape,
-    ) -> Result<Result<Self, Refusal>, mozzi::Error> {
-        if is_too_long(model, query) {
-            return Ok(Err(Refusal::Long));
-        }
-        let program = record_quantity(model, query, arguments)?;
+    /// [`Refusal`] with the reason why there is none.
+    pub fn new(program: &Program, query: Query, shape: Shape) -> Result<Self, Refusal> {
         let kinds = pivot_names(&query).len();
         let (inputs, own) = (program.inputs().len(), program.outputs().len() - kinds);
-        let kernel = Kernel::shared(&program, shape, Form::Rows, own);
-        Ok(kernel.map(|kernel| Code { kernel, inputs, own, kinds }))
+        let kernel = Kernel::shared(program, shape, Form::Rows, own)?;
+        Ok(Code { kernel, inputs, own, kinds })
     }
 }
 
@@ -92,17 +79,20 @@ fn fitting(extent: Extent, length: usize) -> usize {
     }
 }
 
-/// Computes a chunk's states; returns the errors of those that failed. `constants` are the inputs after the state that
-/// are the same in all states.
+/// Computes a state of a chunk alone and replaces its outputs.
+pub(crate) type Recompute<'r, T> = &'r (dyn Fn(&mut Chunk<T>, usize) -> Result<(), mozzi::Error> + Sync);
+
+/// Computes a chunk's states; returns the errors of those that failed. Each input is the same in all states, or `None`:
+/// the next table of the chunk.
 pub(crate) fn run<T: Number>(
     code: &Code,
-    constants: &[Option<Vec<f64>>],
-    request: &Request<T>,
+    given: &[Option<Vec<f64>>],
+    recompute: Recompute<T>,
     worker: &mut Worker<T>,
     mut chunk: Chunk<T>,
 ) -> Vec<(usize, mozzi::Error)> {
     let (lanes, extents) = (code.kernel.shape().lanes(), code.kernel.extents());
-    let sources = worker.prepare(code, constants, chunk.states.div_ceil(lanes).min(RUNS));
+    let sources = worker.prepare(code, given, chunk.states.div_ceil(lanes).min(RUNS));
     let sources = &sources[..code.inputs];
     // the runs for which what is read or written beyond the rows is in the tables, too
     let mut direct = chunk.states / lanes;
@@ -126,18 +116,18 @@ pub(crate) fn run<T: Number>(
                 Source::Constant(k) => &worker.constants[k],
             };
         }
-        let mut outputs: [&mut [T]; MOST_OUTPUTS + KINDS] = Default::default();
+        let mut outputs: [&mut [T]; MOST_TABLES + KINDS] = Default::default();
         for (place, (table, width)) in outputs.iter_mut().zip(&mut *chunk.outputs) {
             *place = &mut table[first * *width..];
         }
         call(code, runs, &inputs[..code.inputs], outputs, &mut worker.squares, &mut worker.pivots);
-        worker.test(code, request, &mut chunk, first..first + runs * lanes, &mut errors);
+        worker.test(code, recompute, &mut chunk, first..first + runs * lanes, &mut errors);
         block += runs;
     }
     for first in (direct * lanes..chunk.states).step_by(lanes) {
         let rows = (chunk.states - first).min(lanes);
         worker.run_padded(code, sources, &mut chunk, first, rows);
-        worker.test(code, request, &mut chunk, first..first + rows, &mut errors);
+        worker.test(code, recompute, &mut chunk, first..first + rows, &mut errors);
     }
     errors
 }
@@ -147,7 +137,7 @@ fn call<'t, T: Number>(
     code: &Code,
     runs: usize,
     inputs: &[&[T]],
-    mut outputs: [&'t mut [T]; MOST_OUTPUTS + KINDS],
+    mut outputs: [&'t mut [T]; MOST_TABLES + KINDS],
     squares: &mut [T],
     pivots: &'t mut [Vec<T>; KINDS],
 ) {
@@ -159,26 +149,26 @@ fn call<'t, T: Number>(
 
 impl<T: Number> Worker<T> {
     /// Where the code finds its inputs; constants are repeated for this many runs.
-    fn prepare(&mut self, code: &Code, constants: &[Option<Vec<f64>>], runs: usize) -> [Source; MOST_ARRAYS] {
+    fn prepare(&mut self, code: &Code, given: &[Option<Vec<f64>>], runs: usize) -> [Source; MOST_ARRAYS] {
         let (lanes, extents) = (code.kernel.shape().lanes(), code.kernel.extents());
         self.squares.resize(RUNS * lanes, T::zero());
         self.pivots.iter_mut().for_each(|pivots| pivots.resize(RUNS * 2 * lanes, T::zero()));
         let (mut sources, mut tables) = ([Source::Table(0); MOST_ARRAYS], 0);
-        self.constants.resize(constants.len(), Vec::new());
-        for (k, source) in sources.iter_mut().enumerate().take(code.inputs) {
-            match k.checked_sub(code.inputs - constants.len()).and_then(|c| Some((c, constants[c].as_ref()?))) {
+        self.constants.resize(given.len(), Vec::new());
+        for (k, (source, constant)) in sources.iter_mut().zip(given).enumerate() {
+            *source = match constant {
                 None => {
-                    *source = Source::Table(tables);
                     tables += 1;
+                    Source::Table(tables - 1)
                 }
-                Some((c, numbers)) => {
-                    *source = Source::Constant(c);
-                    let length = extents[k].of(runs);
-                    self.constants[c].clear();
-                    self.constants[c].extend(numbers.iter().map(|&x| T::from_f64(x)).cycle().take(length));
-                    self.constants[c].resize(length, T::zero());
+                Some(numbers) => {
+                    let (repeated, length) = (&mut self.constants[k], extents[k].of(runs));
+                    repeated.clear();
+                    repeated.extend(numbers.iter().map(|&x| T::from_f64(x)).cycle().take(length));
+                    repeated.resize(length, T::zero());
+                    Source::Constant(k)
                 }
-            }
+            };
         }
         sources
     }
@@ -204,7 +194,7 @@ impl<T: Number> Worker<T> {
                 Source::Constant(k) => &self.constants[k],
             };
         }
-        let mut outputs: [&mut [T]; MOST_OUTPUTS + KINDS] = Default::default();
+        let mut outputs: [&mut [T]; MOST_TABLES + KINDS] = Default::default();
         outputs.iter_mut().zip(&mut self.outputs).for_each(|(place, table)| *place = table);
         call(code, 1, &inputs[..code.inputs], outputs, &mut self.squares, &mut self.pivots);
         for ((table, width), found) in chunk.outputs.iter_mut().zip(&self.outputs) {
@@ -218,7 +208,7 @@ impl<T: Number> Worker<T> {
     fn test(
         &self,
         code: &Code,
-        request: &Request<T>,
+        recompute: Recompute<T>,
         chunk: &mut Chunk<T>,
         states: core::ops::Range<usize>,
         errors: &mut Vec<(usize, mozzi::Error)>,
@@ -242,7 +232,7 @@ impl<T: Number> Worker<T> {
             if is_exact(&self.squares[k]) && self.pivots[..code.kinds].iter().all(pivots) {
                 continue;
             }
-            if let Err(error) = chunk.recompute(request, state) {
+            if let Err(error) = recompute(chunk, state) {
                 errors.push((chunk.first + state, error));
             }
         }

@@ -1,15 +1,13 @@
-//! Any quantity with its derivative along a direction, at many states: its kernel on dual numbers.
+//! Any quantity with its derivative along a direction, at many states: its program, differentiated operation by
+//! operation (forward mode).
 
-use crate::chunk::{Fixed, Table, TableMut};
+use crate::batch::cut;
+use crate::chunk::{Chunk, Fixed, Table};
 use crate::request::Request;
-use crate::{Batch, BatchEnvironment, Error};
-use mozzi::kinematics::integrate;
-use mozzi::model::least_is_clear;
-use mozzi::quantities::{Dim, Input, Memory, Query};
-use mozzi::{Dual, Environment, FrameId, Model, Vec3, Wrench};
-
-/// The states of a piece of work.
-const TOGETHER: usize = 32;
+use crate::{Batch, BatchEnvironment, Error, code};
+use mozzi::least_is_clear;
+use mozzi::quantities::{Dim, Input, Query};
+use mozzi_codegen::{Arguments, Program, Rates};
 
 /// A direction at each of N states: the rates of the inputs and of the inertial parameters. `None` is zero.
 #[derive(Clone, Copy, Debug)]
@@ -21,49 +19,23 @@ pub struct Direction<'a> {
     pub parameters: Option<&'a [f64]>,
 }
 
-/// The memory of one thread.
-struct Worker {
-    /// The model with its own parameters.
-    constant: Model<Dual>,
-    memory: Memory<Dual>,
-    inputs: Vec<Vec<Dual>>,
-    outputs: Vec<Vec<Dual>>,
-    rate: Vec<Dual>,
-    applied: Vec<(FrameId, Wrench<Dual>)>,
-}
-
-impl Worker {
-    fn new(model: &Model) -> Self {
-        Worker {
-            constant: model.map(Dual::constant),
-            memory: Memory::new(model),
-            inputs: Vec::new(),
-            outputs: Vec::new(),
-            rate: Vec::new(),
-            applied: Vec::new(),
-        }
-    }
-}
-
 /// One call: its tables are the inputs, the environment's tables, the rates of the inputs, and that of the parameters.
 struct Directional<'a> {
     request: Request<'a, f64>,
-    tables: Vec<Table<'a, f64>>,
-    direction: Direction<'a>,
-    /// The model's own parameters, if only their rate was given.
-    own: Vec<f64>,
+    program: &'a Program,
+    /// The program's inputs that are the same in all states; for `None`, the next table.
+    given: &'a [Option<Vec<f64>>],
+    /// The number of tables before those of rates.
+    of_values: usize,
 }
 
-/// Some states: the first one's index, the values, the derivatives.
-type Piece<'a> = (usize, Fixed<TableMut<'a, f64>>, Fixed<TableMut<'a, f64>>);
-
 impl Batch<f64> {
-    /// Computes a quantity and its derivative along a direction at many states, by its kernel on dual numbers: exact,
-    /// without a step size. The derivative along the velocities e_j is column j of a derivative by θ. The direction of
+    /// Computes a quantity and its derivative along a direction at many states, by its program with the derivative of
+    /// each operation: exact, without a step size. The derivative along the velocities e_j is column j of a derivative by θ. The direction of
     /// the environment is zero.
     ///
-    /// Tables are row-major, whatever the [layout](Batch::layout); `values` and `derivatives` have one table for each
-    /// output. Cost: two to three times the quantity at one state, on this batch's threads, without wide registers.
+    /// `values` and `derivatives` have one table for each output. Cost: about twice the quantity's machine code, once
+    /// that pays as in [`compute`](Batch::compute); before, the program is evaluated step by step.
     ///
     /// ```
     /// use mozzi::quantities::InverseDynamics;
@@ -86,7 +58,8 @@ impl Batch<f64> {
     /// ```
     ///
     /// # Errors
-    /// Those of [`compute`](Batch::compute); a table of the direction has the wrong length.
+    /// Those of [`compute`](Batch::compute); a table of the direction has the wrong length; the program of a robot so
+    /// large would be too long.
     ///
     /// # Panics
     /// If the number of inputs, rates or outputs is not the quantity's.
@@ -108,10 +81,8 @@ impl Batch<f64> {
         assert!(values.len() == outputs.len() && derivatives.len() == outputs.len(), "{name} has {}", outputs.len());
 
         let request = Request::new(query, model, environment);
-        let state = declaration.inputs.iter().zip(inputs).zip(query.input_lengths(model));
-        let mut tables: Vec<Table<f64>> =
-            state.map(|((input, &numbers), width)| Table { name: input.name, numbers, width }).collect();
-        tables.extend(request.further());
+        let mut tables = request.tables(inputs);
+        let of_values = tables.len();
         let width = |(input, width): (&Input, usize)| if input.dim == Dim::Nq { model.n() } else { width };
         let lengths = declaration.inputs.iter().zip(query.input_lengths(model)).map(width);
         let given = direction.inputs.iter().zip(lengths).filter_map(|(numbers, width)| Some(((*numbers)?, width)));
@@ -124,137 +95,78 @@ impl Batch<f64> {
         };
         let sizes = outputs.iter().zip(&*values).zip(&*widths).map(size);
         let sizes = sizes.chain(outputs.iter().zip(&*derivatives).zip(&*widths).map(size));
-        let frames = request.wrenches.iter().map(|&(frame, _)| frame);
-        let states = self.check(&tables, sizes, &request.environment, frames)?;
+        let states = self.check(&tables, sizes, &request.environment, request.frames())?;
 
-        let own = match (request.parameters, direction.parameters) {
-            (None, Some(_)) => model.parameters(),
-            _ => Vec::new(),
-        };
-        let mut values = values.iter_mut().zip(&*widths).map(|(table, &width)| (&mut **table, width)).collect();
-        let mut derivatives = derivatives.iter_mut().zip(&*widths).map(|(table, &w)| (&mut **table, w)).collect();
-        let mut pieces: Vec<Piece> = Vec::with_capacity(states.div_ceil(TOGETHER));
-        for first in (0..states).step_by(TOGETHER) {
-            let count = TOGETHER.min(states - first);
-            pieces.push((first, split(&mut values, count), split(&mut derivatives, count)));
+        let mut frames = Vec::new();
+        let its = request.arguments(&mut frames);
+        let parameters = its.parameters || direction.parameters.is_some();
+        let moving = direction.inputs.iter().map(Option::is_some).chain([direction.parameters.is_some()]);
+        let rates = Rates::Of(moving.enumerate().fold(0, |bits, (k, moves)| bits | u32::from(moves) << k));
+        let arguments = Arguments { parameters, rates, ..its };
+        let mut further = request.constants(&arguments);
+        if request.parameters.is_none() && parameters {
+            further[0] = Some(model.parameters());
         }
-        let call = Directional { request, tables, direction, own };
-        let results = self.workers().map(
-            pieces,
-            || self.pool().lend::<Worker>(),
-            |lent, piece| call.run(lent.get(|| Worker::new(model)), piece),
-        );
-        results.into_iter().collect()
-    }
-}
+        let of_rates = tables[of_values..].iter().map(|_| None);
+        let given: Vec<_> = declaration.inputs.iter().map(|_| None).chain(further).chain(of_rates).collect();
 
-/// Takes the first states off each table.
-fn split<'a>(tables: &mut Fixed<TableMut<'a, f64>>, states: usize) -> Fixed<TableMut<'a, f64>> {
-    let first = |(table, width): &mut TableMut<'a, f64>| {
-        let (first, rest) = core::mem::take(table).split_at_mut(states * *width);
-        *table = rest;
-        (first, *width)
-    };
-    tables.iter_mut().map(first).collect()
+        let values = values.iter_mut().zip(&*widths).map(|(table, &width)| (&mut **table, width));
+        let derivatives = derivatives.iter_mut().zip(&*widths).map(|(table, &width)| (&mut **table, width));
+        let chunks = cut(states, &tables, values.chain(derivatives).collect());
+        self.code(&query, &arguments, states)?;
+        let entry = self.programs().entry(&query, &arguments, false);
+        let program = entry.program(model, query, arguments)?;
+        let call = Directional { request, program, given: &given, of_values };
+        let recompute = |chunk: &mut Chunk<f64>, state: usize| call.one(chunk, state);
+        let errors = match entry.made() {
+            Some(Ok(made)) => self.workers().map(
+                chunks,
+                || self.pool().lend::<code::Worker<f64>>(),
+                |lent, chunk| code::run(made, &given, &recompute, lent.get(code::Worker::default), chunk),
+            ),
+            _ => self.workers().map(
+                chunks,
+                || (),
+                |(), mut chunk| {
+                    let (first, states) = (chunk.first, chunk.states);
+                    let failed = |state| Some((first + state, recompute(&mut chunk, state).err()?));
+                    (0..states).filter_map(failed).collect()
+                },
+            ),
+        };
+        match errors.into_iter().flatten().min_by_key(|(index, _)| *index) {
+            Some((index, source)) => Err(Error::State { index, source }),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Directional<'_> {
-    /// The numbers of this state in a table.
-    fn row(&self, table: usize, state: usize) -> &[f64] {
-        let Table { numbers, width, .. } = self.tables[table];
-        &numbers[state * width..][..width]
-    }
-
-    fn run(&self, worker: &mut Worker, (first, mut values, mut derivatives): Piece) -> Result<(), Error> {
-        let count = values.iter().map(|(table, width)| table.len() / (*width).max(1)).max().unwrap_or(0);
-        for k in 0..count {
-            self.at(worker, first + k).map_err(|source| Error::State { index: first + k, source })?;
-            let tables = values.iter_mut().zip(derivatives.iter_mut());
-            for (((values, width), (derivatives, _)), found) in tables.zip(&worker.outputs) {
-                let places = values[k * *width..].iter_mut().zip(&mut derivatives[k * *width..]);
-                places.zip(found).for_each(|((value, derivative), x)| (*value, *derivative) = (x.value, x.derivative));
-            }
+    /// Computes a state of a chunk step by step, with all checks.
+    fn one(&self, chunk: &mut Chunk<f64>, state: usize) -> Result<(), mozzi::Error> {
+        let mut tables = chunk.inputs.iter();
+        let inputs: Vec<&[f64]> = self
+            .given
+            .iter()
+            .map(|constant| match constant {
+                Some(numbers) => numbers.as_slice(),
+                None => tables.next().map(|table| table.row(chunk.first + state)).unwrap_or_default(),
+            })
+            .collect();
+        let found = self.program.evaluate(&inputs);
+        let (own, pivots) = found.split_at(chunk.outputs.len());
+        let are_clear = |pivots: &Vec<f64>| {
+            let least = pivots.iter().fold(f64::INFINITY, |least, &x| if x < least || x.is_nan() { x } else { least });
+            pivots.is_empty() || least_is_clear(least, pivots.iter().sum())
+        };
+        if !pivots.iter().all(are_clear) {
+            let tables = chunk.inputs[..self.of_values].iter();
+            let values: Vec<Vec<f64>> = tables.map(|table| table.row(chunk.first + state).to_vec()).collect();
+            self.request.at_one_state(&values)?; // the error names the joint
+        }
+        for ((table, width), found) in chunk.outputs.iter_mut().zip(own) {
+            table[state * *width..][..*width].copy_from_slice(found);
         }
         Ok(())
     }
-
-    /// Fills the worker's outputs at this state.
-    fn at(&self, worker: &mut Worker, state: usize) -> Result<(), mozzi::Error> {
-        let Directional { request, direction, own, .. } = self;
-        let Worker { constant, memory, inputs, outputs, rate, applied } = worker;
-        let declared = request.query.declaration().inputs;
-        inputs.resize(declared.len(), Vec::new());
-        let further = declared.len() + request.further().count();
-        let mut next = further; // the next table of the direction
-        for (k, (input, numbers)) in declared.iter().zip(&mut *inputs).enumerate() {
-            numbers.clear();
-            let value = self.row(k, state);
-            let given = direction.inputs[k].is_some().then(|| self.row(next, state));
-            next += usize::from(given.is_some());
-            match given {
-                None => numbers.extend(value.iter().map(|&x| Dual::constant(x))),
-                Some(given) if input.dim == Dim::Nq => {
-                    numbers.extend(value.iter().map(|&x| Dual::constant(x)));
-                    rate.clear();
-                    rate.extend(given.iter().map(|&x| Dual::constant(x)));
-                    integrate(request.model, numbers, rate, Dual { value: 0.0, derivative: 1.0 }); // θ ⊕ δθ ε
-                }
-                Some(given) => {
-                    numbers.extend(value.iter().zip(given).map(|(&value, &derivative)| Dual { value, derivative }));
-                }
-            }
-        }
-        let mut table = declared.len();
-        let mut row = |is_given: bool| {
-            table += usize::from(is_given);
-            is_given.then(|| self.row(table - 1, state))
-        };
-        let (parameters, gravity) = (row(request.parameters.is_some()), row(request.gravity.is_some()));
-        let mut environment = Environment {
-            gravity: request.environment.gravity.map(Dual::constant),
-            base_twist: request.environment.base_twist.map(Dual::constant),
-            base_acceleration: request.environment.base_acceleration.map(Dual::constant),
-            applied: &[],
-        };
-        if let Some(g) = gravity {
-            environment.gravity = Vec3(core::array::from_fn(|k| Dual::constant(g[k])));
-        }
-        applied.clear();
-        applied.extend(request.environment.applied.iter().map(|&(frame, F)| (frame, F.map(Dual::constant))));
-        for &(frame, _) in request.wrenches {
-            let F = row(true).unwrap_or(&[0.0; 6]);
-            applied.push((frame, Wrench::from_array(core::array::from_fn(|k| Dual::constant(F[k])))));
-        }
-        environment.applied = applied;
-        let changed = (parameters.is_some() || direction.parameters.is_some()).then(|| {
-            let value = parameters.unwrap_or(own);
-            let rate = direction.parameters.map(|_| self.row(next, state));
-            let pi = rate.map_or_else(|| Dual::constants(value), |rate| Dual::list(value, rate));
-            request.model.with_parameters(&pi)
-        });
-        let model = changed.as_ref().unwrap_or(constant);
-
-        let lengths = request.query.output_lengths(request.model);
-        outputs.resize(request.query.declaration().outputs.len(), Vec::new());
-        outputs.iter_mut().zip(lengths).for_each(|(output, length)| output.resize(length, Dual::constant(0.0)));
-        let given: Fixed<&[Dual]> = inputs.iter().map(Vec::as_slice).collect();
-        let mut slices: Fixed<&mut [Dual]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        request.query.evaluate(model, &given, &environment, memory, &mut slices);
-        if request.query.declaration().divides && !memory.pivots().all(are_clear) {
-            let numbers: Vec<Vec<f64>> = (0..further).map(|table| self.row(table, state).to_vec()).collect();
-            request.at_one_state(&numbers)?; // the error names the joint
-        }
-        Ok(())
-    }
-}
-
-/// The quick test of pivots, on their values.
-fn are_clear(pivots: &[Dual]) -> bool {
-    let Some(first) = pivots.first() else { return true };
-    let (mut least, mut sum) = (first.value, 0.0);
-    for pivot in pivots {
-        least = if pivot.value < least || pivot.value.is_nan() { pivot.value } else { least };
-        sum += pivot.value;
-    }
-    least_is_clear(least, sum)
 }

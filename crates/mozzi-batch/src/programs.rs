@@ -4,7 +4,7 @@ use crate::code::Code;
 use crate::once::Once;
 use mozzi::quantities::Query;
 use mozzi::{Error, FrameId, Model, TaskFrame};
-use mozzi_codegen::{Arguments, Refusal, Shape};
+use mozzi_codegen::{Arguments, Program, Refusal, Shape, estimate, is_too_long, record_quantity};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -23,6 +23,8 @@ pub(crate) struct Entry {
     asked: AtomicUsize,
     /// Compiled explicitly: kept.
     is_kept: AtomicBool,
+    /// Kept if calls of few states evaluate it: a derivative along a direction.
+    program: Once<Program>,
     code: Once<Result<Code, Refusal>>,
 }
 
@@ -43,7 +45,30 @@ impl Entry {
         arguments: Arguments,
         shape: Shape,
     ) -> Result<&Result<Code, Refusal>, Error> {
-        self.code.get_or_try(|| Code::new(model, query, arguments, shape))
+        self.code.get_or_try(|| {
+            if is_too_long(model, query) {
+                return Ok(Err(Refusal::Long));
+            }
+            match self.program.get() {
+                Some(program) => Ok(Code::new(program, query, shape)),
+                None => Ok(Code::new(&record_quantity(model, query, arguments)?, query, shape)),
+            }
+        })
+    }
+
+    /// The program, recorded now if need be, and kept.
+    ///
+    /// # Errors
+    /// It would be too long; or as [`make`](Self::make).
+    pub fn program(&self, model: &Model, query: Query, arguments: Arguments) -> Result<&Program, Error> {
+        self.program.get_or_try(|| match is_too_long(model, query) {
+            false => record_quantity(model, query, arguments),
+            true => Err(Error::BadArgument {
+                what: "the derivative of a robot so large",
+                found: format!("a program of about {:.1e} operations", 3.0 * estimate(model, query)),
+                expected: "fewer, for which its memory is bounded; products and derivatives by name have no bound",
+            }),
+        })
     }
 
     /// Counts a call; whether machine code pays by now. It depends on the sizes of this batch's calls alone.
@@ -80,6 +105,7 @@ impl Programs {
             key: Key::new(query, arguments),
             asked: AtomicUsize::new(0),
             is_kept: AtomicBool::new(keep),
+            program: Once::default(),
             code: Once::default(),
         });
         list.push(entry.clone());

@@ -4,7 +4,7 @@ use crate::chunk::Table;
 use crate::{BatchEnvironment, Number};
 use mozzi::quantities::{Query, Uses};
 use mozzi::{Environment, Error, FrameId, Model, Vec3, Wrench};
-use mozzi_codegen::Arguments;
+use mozzi_codegen::{Arguments, Rates};
 
 /// The quantity and its arguments. Its tables are the quantity's inputs, then those of the environment: parameters,
 /// gravity, wrenches.
@@ -68,7 +68,7 @@ impl<'a, T: Number> Request<'a, T> {
             base_acceleration: differs(Uses::BASE_ACCELERATION, environment.base_acceleration != own.base_acceleration),
             about: self.query.subject.point != Vec3([0.0; 3]),
             wrenches: frames,
-            rates: false,
+            rates: Rates::None,
         }
     }
 

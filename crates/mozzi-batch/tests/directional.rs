@@ -59,7 +59,12 @@ fn an_input_of_six_numbers_has_a_rate_of_six() {
 
 #[test]
 fn rates_are_the_matrices_times_the_direction() {
-    let (model, states) = (anymal(), 70);
+    rates_of(70); // step by step
+    rates_of(1003); // by machine code
+}
+
+fn rates_of(states: usize) {
+    let model = anymal();
     let (n, batch) = (model.n(), Batch::new(&model));
     let theta = positions(&model, states);
     let inputs = [theta, numbers(states * n, 2.0), numbers(states * n, 3.0)];

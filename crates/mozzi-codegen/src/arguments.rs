@@ -28,10 +28,33 @@ pub struct Arguments<'a> {
     /// `wrench`, or `wrench_FRAME` for several frames: six numbers (m, f), the wrench that this frame applies to the
     /// environment in its own coordinates.
     pub wrenches: &'a [FrameId],
-    /// The directional derivative, too: after all other inputs a rate of each, such as `theta_rate`, and after the
-    /// outputs the rate of each, such as `tau_rate`. A rate of θ has n numbers, along the velocities. See
+    /// The directional derivative, too: after all other inputs the rates of some, such as `theta_rate`, and after the
+    /// quantity's outputs the rate of each, such as `tau_rate`. A rate of θ has n numbers, along the velocities. See
     /// [`Dual`](mozzi::Dual).
-    pub rates: bool,
+    pub rates: Rates,
+}
+
+/// The inputs of a program that have a rate; the others do not change along the direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Rates {
+    /// None: no derivative.
+    #[default]
+    None,
+    /// All.
+    All,
+    /// Those whose bits are set, of all inputs in their order.
+    Of(u32),
+}
+
+impl Rates {
+    /// Whether this input has a rate.
+    pub fn has(self, input: usize) -> bool {
+        match self {
+            Rates::None => false,
+            Rates::All => true,
+            Rates::Of(bits) => bits.checked_shr(input as u32).is_some_and(|bits| bits & 1 == 1),
+        }
+    }
 }
 
 impl Arguments<'_> {
@@ -71,7 +94,7 @@ pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments
     arguments.wrenches.iter().try_for_each(|&frame| model.check_frame(frame))?;
     let by = |model: &Model| {
         let program = recorded(model, query, arguments);
-        if arguments.rates { with_rates(&program, model) } else { program }
+        if arguments.rates == Rates::None { program } else { with_rates(&program, model, arguments.rates) }
     };
     let program = by(model);
     let solves =

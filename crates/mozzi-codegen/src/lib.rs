@@ -40,7 +40,7 @@ mod tape;
 mod text;
 mod traced;
 
-pub use arguments::{Arguments, pivot_names, record_quantity};
+pub use arguments::{Arguments, Rates, pivot_names, record_quantity};
 pub use count::Count;
 pub use emit::{Block, CudaLayout, EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
 pub use estimate::{LONGEST_TEXT, estimate, is_too_long};

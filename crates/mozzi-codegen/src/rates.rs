@@ -1,5 +1,6 @@
 //! Directional derivatives of programs (forward mode): a program evaluated on dual numbers while another is recorded.
 
+use crate::arguments::Rates;
 use crate::program::Program;
 use crate::record::record;
 use crate::traced::Traced;
@@ -10,36 +11,38 @@ pub fn rate_of(name: &str) -> String {
     format!("{name}_rate")
 }
 
-/// The program and its derivative along a direction, with a rate for each input and for each output but pivots. The
-/// rate of `theta` is along the velocities.
-pub fn with_rates(program: &Program, model: &Model) -> Program {
+/// The program and its derivative along a direction, with a rate for some inputs and for each output but pivots, which
+/// come last. The rate of `theta` is along the velocities.
+pub fn with_rates(program: &Program, model: &Model, rates: Rates) -> Program {
     let is_theta = |name: &str| name == "theta";
     let own = program.inputs().iter().map(|array| (array.name.clone(), array.length));
-    let rates = program.inputs().iter().map(|array| {
+    let moving = program.inputs().iter().enumerate().filter(|&(k, _)| rates.has(k)).map(|(_, array)| {
         let length = if is_theta(&array.name) { model.n() } else { array.length };
         (rate_of(&array.name), length)
     });
-    let inputs: Vec<(String, usize)> = own.chain(rates).collect();
+    let inputs: Vec<(String, usize)> = own.chain(moving).collect();
     let inputs: Vec<(&str, usize)> = inputs.iter().map(|(name, length)| (name.as_str(), *length)).collect();
     let names: Vec<&str> = program.outputs().iter().map(|output| output.name.as_str()).collect();
-    let has_rate = |name: &str| !name.ends_with("pivots");
-    let of_rates: Vec<String> = names.iter().filter(|name| has_rate(name)).map(|name| rate_of(name)).collect();
+    let pivots = names.iter().position(|name| name.ends_with("pivots")).unwrap_or(names.len());
+    let of_rates: Vec<String> = names[..pivots].iter().map(|name| rate_of(name)).collect();
     record(&format!("{}_jvp", program.name()), &inputs, |arrays| {
-        let (values, rates) = arrays.split_at(program.inputs().len());
-        let seeded = program.inputs().iter().zip(values.iter().zip(rates));
-        let seeded: Vec<Vec<Dual<Traced>>> = seeded
-            .map(
-                |(array, (x, rate))| {
-                    if is_theta(&array.name) { positions(model, x, rate) } else { Dual::list(x, rate) }
-                },
-            )
-            .collect();
+        let (values, given) = arrays.split_at(program.inputs().len());
+        let mut given = given.iter();
+        let mut seeded: Vec<Vec<Dual<Traced>>> = Vec::with_capacity(values.len());
+        for (k, (array, x)) in program.inputs().iter().zip(values).enumerate() {
+            let rate = if rates.has(k) { given.next() } else { None };
+            seeded.push(match rate {
+                None => Dual::constants(x),
+                Some(rate) if is_theta(&array.name) => positions(model, x, rate),
+                Some(rate) => Dual::list(x, rate),
+            });
+        }
         let found = program.evaluate(&seeded.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let of = |part: fn(&Dual<Traced>) -> Traced| move |x: &Vec<Dual<Traced>>| x.iter().map(part).collect();
-        let values = names.iter().copied().zip(found.iter().map(of(|x| x.value)));
-        let varying = found.iter().zip(&names).filter(|(_, name)| has_rate(name)).map(|(x, _)| x);
-        let derivatives = of_rates.iter().map(String::as_str).zip(varying.map(of(|x| x.derivative)));
-        values.chain(derivatives).collect()
+        let values: Vec<(&str, Vec<Traced>)> = names.iter().copied().zip(found.iter().map(of(|x| x.value))).collect();
+        let derivatives = of_rates.iter().map(String::as_str).zip(found.iter().map(of(|x| x.derivative)));
+        let (own, pivots) = values.split_at(pivots);
+        own.iter().cloned().chain(derivatives).chain(pivots.iter().cloned()).collect()
     })
 }
 

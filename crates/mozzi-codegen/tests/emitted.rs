@@ -14,7 +14,7 @@ use mozzi::quantities::{
 use mozzi::testing::Random;
 use mozzi::{Base, Model, Scalar, Task, TaskFrame, Vec3};
 use mozzi_codegen::{
-    Arguments, EmitError, Language, Precision, Program, Traced, emit, emit_programs, record, record_quantity,
+    Arguments, EmitError, Language, Precision, Program, Rates, Traced, emit, emit_programs, record, record_quantity,
 };
 use std::process::Command;
 
@@ -108,7 +108,7 @@ fn modules(language: Language, precision: Precision) -> Vec<Module> {
         (
             named(&ur5, "along"),
             vec![InverseDynamics.into(), ForwardDynamics.into()],
-            Arguments { rates: true, ..fixed },
+            Arguments { rates: Rates::All, ..fixed },
             3,
         ),
         (ur5, vec![InverseDynamics.into()], open, 3),

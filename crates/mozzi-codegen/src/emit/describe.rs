@@ -3,6 +3,7 @@
 use super::Precision;
 use super::names::in_comment;
 use crate::arguments::Arguments;
+use crate::arguments::Rates;
 use crate::program::Program;
 use mozzi::Freedom;
 use mozzi::quantities::Query;
@@ -96,7 +97,7 @@ pub(super) fn quantity(model: &Model, query: Query, program: &Program) -> Vec<St
 
 /// Shape, meaning and unit of an array.
 pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &str) -> String {
-    if let Some(of) = name.strip_suffix("_rate").filter(|_| arguments.rates) {
+    if let Some(of) = name.strip_suffix("_rate").filter(|_| arguments.rates != Rates::None) {
         let along = if of == "theta" { ", along the velocities" } else { "" };
         return format!("the rate of {of} in the direction of the inputs' rates{along}");
     }

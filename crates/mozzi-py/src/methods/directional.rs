@@ -47,7 +47,7 @@ fn finished<'py, T: Element>(
 
 #[pymethods]
 impl PyModel {
-    /// A quantity and its derivative along a direction, by its kernel on dual numbers: exact, without a step size.
+    /// A quantity and its derivative along a direction, by its program's operations: exact, without a step size.
     ///
     /// The derivative is ∂f/∂θ δθ + ∂f/∂θ̇ δθ̇ + … + ∂f/∂π δπ, for any quantity, also for derivatives, whose
     /// derivatives are second ones.
