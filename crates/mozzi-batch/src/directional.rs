@@ -31,8 +31,8 @@ struct Directional<'a> {
 
 impl Batch<f64> {
     /// Computes a quantity and its derivative along a direction at many states, by its program with the derivative of
-    /// each operation: exact, without a step size. The derivative along the velocities e_j is column j of a derivative by θ. The direction of
-    /// the environment is zero.
+    /// each operation: exact, without a step size. The derivative along the velocities e_j is column j of a derivative
+    /// by θ. The direction of the environment is zero.
     ///
     /// `values` and `derivatives` have one table for each output. Cost: about twice the quantity's machine code, once
     /// that pays as in [`compute`](Batch::compute); before, the program is evaluated step by step.

@@ -1,6 +1,6 @@
 //! Checks the package's text about the quantities against the list: their methods in `_mozzi.pyi`, and the named tuples
-//! of several results in `_quantities.py`. `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-py --test all stubs`,
-//! regenerates both.
+//! of several results in `_quantities.py`. `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-py --test all
+//! stubs`, regenerates both.
 
 #[allow(dead_code)] // used by the library
 #[path = "../src/signature.rs"]
