@@ -12,22 +12,22 @@ use std::time::Duration;
 
 /// The time of the interrupt: after the first second, since progress is shown from then on.
 const WAIT: Duration = Duration::from_millis(1700);
-/// Coriolis matrices in portable registers by an unoptimised program: 15 s.
-const STATES: usize = 20_000;
+/// θ̈ by thirteen times τ, by the kernel of one state: 10 s.
+const STATES: usize = 100_000;
 
-/// θ and θ̇ of a UR5, `count` states.
+/// θ, θ̇ and τ of a robot with twelve joints, `count` states.
 fn states(folder: &Path, count: usize) -> String {
-    let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({count}, 12), }}\n");
+    let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({count}, 36), }}\n");
     let mut bytes = [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat();
-    (0..count * 12).for_each(|k| bytes.extend((k as f64 * 0.7).sin().to_le_bytes()));
+    (0..count * 36).for_each(|k| bytes.extend((k as f64 * 0.7).sin().to_le_bytes()));
     let path = folder.join("states.npy");
     std::fs::write(&path, bytes).expect("a file");
     path.to_string_lossy().into_owned()
 }
 
 fn batch<'a>(input: &'a str, output: &'a str) -> Vec<&'a str> {
-    let flags = ["--threads", "1", "--instruction-set", "portable"];
-    [&["compute", "ur5", "coriolis-matrix", "--in", input, "--out", output][..], &flags].concat()
+    let quantity = ["compute", "anymal", "forward-dynamics-by-inverse-dynamics"];
+    [&quantity[..], &["--in", input, "--out", output, "--threads", "1", "--kernels-only"]].concat()
 }
 
 /// The output after a SIGINT; nothing if the program had already ended.
@@ -51,7 +51,7 @@ fn interrupted(arguments: &[&str]) -> Option<Output> {
     Some(output)
 }
 
-/// The number before " of 20000 states" and the like.
+/// The number before " of 100000 states" and the like.
 fn count(said: &str, after: &str) -> usize {
     let (before, _) = said.split_once(after).unwrap_or_else(|| panic!("{after}: {said}"));
     before.rsplit(' ').next().and_then(|word| word.parse().ok()).unwrap_or_else(|| panic!("{said}"))
@@ -61,21 +61,21 @@ fn count(said: &str, after: &str) -> usize {
 fn a_batch_leaves_the_states_so_far() {
     let folder = folder("interrupt_batch");
     let input = states(&folder, STATES);
-    for name in ["C.csv", "C.npz"] {
+    for name in ["a.csv", "a.npz"] {
         let out = folder.join(name).to_string_lossy().into_owned();
         let Some(output) = interrupted(&batch(&input, &out)) else { continue };
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let done = count(&said, &format!(" of {STATES} states"));
         assert!(done > 0 && said.contains("note: stopped by Ctrl-C: these are the first"), "{said}");
-        if name == "C.csv" {
+        if name == "a.csv" {
             let rows = std::fs::read_to_string(&out).expect("written");
             assert_eq!(rows.lines().count(), done + 1);
-            assert!(rows.lines().all(|row| row.split(',').count() == 36));
+            assert!(rows.lines().all(|row| row.split(',').count() == 36 + 12));
         } else {
             let mut archive =
                 zip::ZipArchive::new(std::fs::File::open(&out).expect("written")).expect("a whole archive");
-            let bytes = archive.by_name("C.npy").expect("the matrices").size() as usize;
-            assert!((done * 36 * 8..done * 36 * 8 + 200).contains(&bytes), "{bytes} bytes of {done} states");
+            let bytes = archive.by_name("ddtheta.npy").expect("the accelerations").size() as usize;
+            assert!((done * 12 * 8..done * 12 * 8 + 200).contains(&bytes), "{bytes} bytes of {done} states");
         }
     }
 }
@@ -95,7 +95,7 @@ fn a_benchmark_leaves_the_quantities_so_far() {
 #[test]
 fn progress_is_shown_on_a_terminal() {
     let folder = folder("interrupt_terminal");
-    let (input, out) = (states(&folder, STATES), folder.join("C.npy").to_string_lossy().into_owned());
+    let (input, out) = (states(&folder, STATES), folder.join("a.npy").to_string_lossy().into_owned());
     let command: Vec<String> = std::iter::once(env!("CARGO_BIN_EXE_mozzi"))
         .chain(batch(&input, &out))
         .map(|word| format!("'{word}'"))
@@ -118,7 +118,8 @@ fn progress_is_shown_on_a_terminal() {
     if typed.is_err() || !matches!(output.status.code(), Some(130)) {
         return println!("skipped: another `script`, or done before it was interrupted: {shown:.300}");
     }
-    let bar = shown.split('\u{1b}').find(|part| part.contains("/20,000 states, ")).unwrap_or_else(|| panic!("{shown}"));
-    assert!(bar.contains("coriolis-matrix") && bar.contains("/s, ") && bar.contains(" left"), "{bar}");
+    let bar =
+        shown.split('\u{1b}').find(|part| part.contains("/100,000 states, ")).unwrap_or_else(|| panic!("{shown}"));
+    assert!(bar.contains("forward-dynamics-by") && bar.contains("/s, ") && bar.contains(" left"), "{bar}");
     assert!(shown.contains("stopped by Ctrl-C: these are the first"), "{shown}");
 }

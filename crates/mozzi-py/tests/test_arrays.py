@@ -266,7 +266,10 @@ def test_threads(random):
             assert np.array_equal(robot.inverse_dynamics(theta, dtheta, ddtheta, threads=threads), expected), name
 
 
-def test_many_threads_share_a_model(ur5, random):
+@pytest.mark.parametrize("way", ["kernels", "machine code"])
+def test_many_threads_share_a_model(random, way):
+    ur5 = mozzi.models.ur5()
+    ur5 = ur5.kernels_only() if way == "kernels" else ur5.compile("inverse_dynamics")
     theta, dtheta, ddtheta = state(ur5, random, 200)
     expected = ur5.inverse_dynamics(theta, dtheta, ddtheta)
     wrong = []

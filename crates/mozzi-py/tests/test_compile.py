@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import pickle
+import threading
 
 import mozzi
 import numpy as np
@@ -135,3 +136,27 @@ def test_forked_processes(ur5, random):
     with multiprocessing.get_context("fork").Pool(2) as pool:
         for found in pool.map_async(work, [(fast, many)] * 3).get(120):
             assert_close(found, expected)
+
+
+def forked_result(model, theta, queue):
+    queue.put(model.coriolis_matrix(theta, theta))
+
+
+def test_a_fork_while_another_thread_makes_code():
+    context = multiprocessing.get_context("fork")
+    theta = np.random.default_rng(4).uniform(-1, 1, (2000, 6))
+    expected = mozzi.models.ur5().kernels_only().coriolis_matrix(theta, theta)
+    for _ in range(8):
+        model = mozzi.models.ur5()  # its code is not made yet
+        maker = threading.Thread(target=model.coriolis_matrix, args=(theta, theta))
+        queue = context.Queue()
+        children = [context.Process(target=forked_result, args=(model, theta, queue)) for _ in range(2)]
+        maker.start()
+        for child in children:
+            child.start()
+        for _ in children:
+            assert_close(queue.get(timeout=60), expected)  # a child that hangs gives none
+        for child in children:
+            child.join(60)
+            assert child.exitcode == 0
+        maker.join()

@@ -17,8 +17,8 @@ pub fn with_each(root: &Path, page: &str) -> Result<String, String> {
     }
     out += "\n## One by one\n";
     for row in &rows {
-        let [name, formula, inputs, of, environment, outputs, arrays] = row[..] else {
-            return Err(format!("docs/quantities.md: {} columns, expected 7", row.len()));
+        let [name, formula, inputs, of, environment, outputs] = row[..] else {
+            return Err(format!("docs/quantities.md: {} columns, expected 6", row.len()));
         };
         let name = name.trim_matches('`');
         let rust = camel_case(name);
@@ -29,7 +29,7 @@ pub fn with_each(root: &Path, page: &str) -> Result<String, String> {
         let environment = if environment.is_empty() { "nothing" } else { environment };
         out += &format!(
             "\n### `{name}`\n\n{formula}\n\n- **Inputs**: {inputs}{of}; of the environment: {environment}\n\
-             - **Outputs**: {outputs}; arrays by {arrays}\n\
+             - **Outputs**: {outputs}\n\
              - **Command line**: `mozzi compute MODEL {}`; **Python**: [`Model.{name}`](python.md#model{name})\n\
              - **Rust**: [`mozzi::quantities::{rust}`](../rustdoc/mozzi/quantities/struct.{rust}.html); **C++**: \
              `workspace.{name}(…)`; **C**: `mozzi_{name}(…)`\n",

@@ -239,6 +239,10 @@ pub fn simulate<'py>(
     let environment = BatchEnvironment::from(environment);
     // robots with dry friction that sticks move one by one
     let batch = this.robot().batch(threads)?.with_sticking(false);
+    // the steps are several calls: by one engine
+    let states = leading.iter().product::<usize>().saturating_mul(options.steps);
+    let batch = batch.for_job_of(&[forward_dynamics_of(model)], &environment, states);
+    let batch = batch.map_err(|error| of_batch(error, leading))?;
     let robots = Robots { model, batch, environment, leading, options };
     let everywhere = |_| String::new();
     robots.check_finite("theta", start[0], everywhere)?;
