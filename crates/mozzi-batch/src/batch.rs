@@ -39,7 +39,7 @@ pub struct Batch<T: Number = f64> {
     /// Workers left by earlier calls.
     pool: Pool,
     programs: Programs,
-    /// Makes no further code: see [`Batch::decided`].
+    /// Makes no further code: see [`Batch::for_job_of`].
     is_decided: bool,
 }
 
@@ -183,10 +183,7 @@ impl<T: Number> Batch<T> {
                 |lent, chunk| kernels::run(&request, lent.get(|| kernels::Worker::new(&self.model)), chunk),
             ),
         };
-        match errors.into_iter().flatten().min_by_key(|(index, _)| *index) {
-            Some((index, source)) => Err(Error::State { index, source }),
-            None => Ok(()),
-        }
+        Error::of_first(errors)
     }
 
     /// The machine code for a call of so many states, made now if it pays; `None` if the kernels compute it.

@@ -134,10 +134,7 @@ impl Batch<f64> {
                 },
             ),
         };
-        match errors.into_iter().flatten().min_by_key(|(index, _)| *index) {
-            Some((index, source)) => Err(Error::State { index, source }),
-            None => Ok(()),
-        }
+        Error::of_first(errors)
     }
 }
 

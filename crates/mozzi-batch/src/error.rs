@@ -58,6 +58,14 @@ pub enum Error {
 }
 
 impl Error {
+    /// The error of the first state that failed, of those of all chunks.
+    pub(crate) fn of_first(errors: Vec<Vec<(usize, mozzi::Error)>>) -> Result<(), Self> {
+        match errors.into_iter().flatten().min_by_key(|(index, _)| *index) {
+            Some((index, source)) => Err(Error::State { index, source }),
+            None => Ok(()),
+        }
+    }
+
     /// The same error, its state's index counted from `first` on.
     pub(crate) fn after(self, first: usize) -> Self {
         match self {

@@ -123,6 +123,24 @@ impl Prepared {
     }
 }
 
+/// A batch of a model, changed by `with`.
+///
+/// # Safety
+/// See mozzi.h.
+unsafe fn prepare(
+    model: *const ModelHandle,
+    threads: usize,
+    batch: *mut *mut BatchHandle,
+    with: impl FnOnce(Batch) -> Batch,
+) -> Status {
+    // SAFETY: the caller's promise, as everywhere in this file.
+    guard(|| unsafe {
+        clear(batch)?;
+        let robot = borrow(model)?;
+        put(Prepared::new(robot, with(Batch::new(&robot.model)), threads)?, batch)
+    })
+}
+
 /// A batch of a model on this many threads, 0 for all cores.
 ///
 /// # Safety
@@ -134,11 +152,7 @@ pub unsafe extern "C" fn mozzi_batch_new(
     batch: *mut *mut BatchHandle,
 ) -> Status {
     // SAFETY: the caller's promise, as everywhere in this file.
-    guard(|| unsafe {
-        clear(batch)?;
-        let robot = borrow(model)?;
-        put(Prepared::new(robot, Batch::new(&robot.model), threads)?, batch)
-    })
+    unsafe { prepare(model, threads, batch, |batch| batch) }
 }
 
 /// A batch that makes no machine code.
@@ -152,11 +166,7 @@ pub unsafe extern "C" fn mozzi_batch_kernels_only(
     batch: *mut *mut BatchHandle,
 ) -> Status {
     // SAFETY: as above.
-    guard(|| unsafe {
-        clear(batch)?;
-        let robot = borrow(model)?;
-        put(Prepared::new(robot, Batch::new(&robot.model).kernels_only(), threads)?, batch)
-    })
+    unsafe { prepare(model, threads, batch, Batch::kernels_only) }
 }
 
 /// A batch with the machine code of a program.
