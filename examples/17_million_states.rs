@@ -5,7 +5,7 @@
 
 use mozzi::Environment;
 use mozzi::quantities::InverseDynamics;
-use mozzi_batch::Batch;
+use mozzi_engine::Batch;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -2,7 +2,7 @@
 
 use mozzi::Solid;
 use mozzi::quantities::{ForwardDynamics, InverseDynamics, Query};
-use mozzi_codegen::{Arguments, Language, Precision, emit_into};
+use mozzi_engine::{Arguments, Language, Precision, emit_into};
 use std::error::Error;
 use std::path::Path;
 

@@ -10,7 +10,7 @@ use crate::workspace::Workspace;
 /// The test programs among whose tests are those that write pages: "page" is in their names.
 const PROGRAMS: [&str; 2] = ["all", "header"];
 /// Their packages.
-const PACKAGES: [&str; 4] = ["mozzi-urdf", "mozzi-batch", "mozzi-py", "mozzi-c"];
+const PACKAGES: [&str; 4] = ["mozzi-urdf", "mozzi-engine", "mozzi-py", "mozzi-c"];
 
 pub fn write(workspace: &Workspace) -> Outcome {
     let mut cargo = workspace.cargo(&["test"]);

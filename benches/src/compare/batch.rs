@@ -5,9 +5,8 @@ use crate::contestant::Contestant;
 use crate::quantity::{self, Outputs, compared};
 use mozzi::Model;
 use mozzi::quantities::Query;
-use mozzi_batch::{Batch, Error};
 use mozzi_benches::{States, inputs};
-use mozzi_codegen::Shape;
+use mozzi_engine::{Batch, Error, Shape};
 use std::hint::black_box;
 
 /// All states in one call.

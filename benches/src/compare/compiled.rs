@@ -3,9 +3,8 @@
 use crate::quantity;
 use mozzi::Model;
 use mozzi::quantities::{InverseDynamics, Query};
-use mozzi_batch::{Engine, compile};
 use mozzi_benches::{States, inputs};
-use mozzi_codegen::{Arguments, Kernel, record_quantity};
+use mozzi_engine::{Arguments, Engine, Kernel, compile, record_quantity};
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -74,7 +74,7 @@ impl From<f64> for Counted {
     }
 }
 impl Scalar for Counted {
-    type Four = [Self; 4];
+    type Lanes<const L: usize> = [Self; L];
     fn from_f64(x: f64) -> Self {
         Counted(x)
     }

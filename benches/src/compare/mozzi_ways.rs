@@ -8,9 +8,8 @@ use crate::quantity::{self, Outputs, compared};
 use mozzi::Model;
 use mozzi::fast::{self, Workspace};
 use mozzi::quantities::Query;
-use mozzi_batch::compile;
 use mozzi_benches::{States, inputs};
-use mozzi_codegen::Shape;
+use mozzi_engine::{Shape, compile};
 use std::hint::black_box;
 
 /// All of them; the first is the unit of the tables.

@@ -7,8 +7,8 @@ use crate::race::{LARGEST_DIFFERENCE, Time, of_runs};
 use mozzi::Model;
 use mozzi::quantities::ForwardDynamics;
 use mozzi::simulation::{Method, Options, torque};
-use mozzi_batch::{Compiled, compile};
 use mozzi_benches::States;
+use mozzi_engine::{Compiled, compile};
 use std::time::{Duration, Instant};
 
 pub const STEPS: usize = 1000;

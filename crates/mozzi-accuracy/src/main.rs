@@ -169,6 +169,6 @@ fn command() -> String {
 }
 
 fn versions() -> String {
-    let arrays = <f64 as mozzi_batch::Number>::shape().map_or("kernels", |shape| shape.instruction_set());
+    let arrays = <f64 as mozzi_engine::Number>::shape().map_or("kernels", |shape| shape.instruction_set());
     format!("mozzi {}, arrays by {arrays}", env!("CARGO_PKG_VERSION"))
 }

@@ -5,7 +5,7 @@ use crate::robot::{Robot, is_of_wrenches};
 use crate::states::States;
 use mozzi::quantities::Query;
 use mozzi::{Environment, fast};
-use mozzi_batch::{Batch, Compiled, Engine, Number, compile};
+use mozzi_engine::{Batch, Compiled, Engine, Number, compile};
 
 /// One way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -73,7 +73,7 @@ impl<'r> Computer<'r> {
         let many = || Batch::new(model).with_threads(1).ok();
         let engine = match way {
             Way::Plain => Inner::One(fast::Workspace::portable(model)),
-            Way::Fused => Inner::One(fast::Workspace::new(model)).which(|one| one.is_fused())?,
+            Way::Fused => Inner::One(fast::Workspace::new(model)).which(|one| one.is_fused(&query))?,
             Way::Single => {
                 let batch =
                     own.then(|| Batch::<f32>::of(model).with_threads(1).ok()?.compile(&[query]).ok()).flatten()?;
@@ -134,8 +134,8 @@ impl Inner {
     fn which(self, holds: impl FnOnce(&Self) -> bool) -> Option<Self> {
         holds(&self).then_some(self)
     }
-    fn is_fused(&self) -> bool {
-        matches!(self, Inner::One(workspace) if workspace.instruction_set() == "fma")
+    fn is_fused(&self, query: &Query) -> bool {
+        matches!(self, Inner::One(workspace) if workspace.is_fused(query))
     }
 }
 
@@ -154,7 +154,7 @@ fn many<T: Number>(
     let mut outputs: Vec<&mut [T]> = found.iter_mut().map(Vec::as_mut_slice).collect();
     match batch.compute(query, &inputs, &(*environment).into(), &mut outputs) {
         // the error of a singular state comes after all states are computed
-        Ok(()) | Err(mozzi_batch::Error::State { .. }) => {}
+        Ok(()) | Err(mozzi_engine::Error::State { .. }) => {}
         Err(error) => panic!("{}: {error}", query.name()),
     }
     found.into_iter().map(|x| x.into_iter().map(Into::into).collect()).collect()

@@ -8,7 +8,7 @@ use crate::robot::{Frame, ModelHandle, Robot};
 use crate::status::{Outcome, Status, guard, of_batch, refuse};
 use mozzi::simulation::Method;
 use mozzi::{Environment, FrameId, Vec3};
-use mozzi_batch::{Batch, BatchEnvironment};
+use mozzi_engine::{Batch, BatchEnvironment};
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@ use crate::handle::{Handle, borrow, clear, free, kind, put};
 use crate::quantity::CSubject;
 use crate::robot::{ModelHandle, Robot};
 use crate::status::{Status, guard, guard_or, of_model};
-use mozzi_batch::{Compiled, Engine};
+use mozzi_engine::{Compiled, Engine};
 use std::sync::Arc;
 
 /// Machine code of some quantities.
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn mozzi_program_new(
             let subject = if subjects.is_null() { std::ptr::null() } else { subjects.add(k) };
             queries.push(CSubject::query(subject, robot, quantity)?);
         }
-        let compiled = mozzi_batch::compile(&robot.model, &queries).map_err(|error| of_model(&error))?;
+        let compiled = mozzi_engine::compile(&robot.model, &queries).map_err(|error| of_model(&error))?;
         put(Program { robot: robot.clone(), compiled }, program)
     })
 }

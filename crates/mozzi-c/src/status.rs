@@ -140,8 +140,8 @@ fn status_of(error: &mozzi::Error) -> Status {
 }
 
 /// An error of a batch.
-pub fn of_batch(error: &mozzi_batch::Error) -> Status {
-    use mozzi_batch::Error as E;
+pub fn of_batch(error: &mozzi_engine::Error) -> Status {
+    use mozzi_engine::Error as E;
     let status = match error {
         E::WrongLength { .. } | E::IncompleteState { .. } => Status::WRONG_LENGTH,
         E::State { source, .. } | E::Model(source) => status_of(source),

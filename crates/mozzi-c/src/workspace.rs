@@ -6,7 +6,7 @@ use crate::robot::{ModelHandle, Robot};
 use crate::status::{Outcome, Status, guard, refuse};
 use mozzi::quantities::{LIST, Of, Query};
 use mozzi::{FrameId, TaskFrame, Wrench, fast};
-use mozzi_batch::Compiled;
+use mozzi_engine::Compiled;
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;

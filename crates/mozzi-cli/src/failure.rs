@@ -66,8 +66,8 @@ impl From<mozzi::Error> for Failure {
     }
 }
 
-impl From<mozzi_batch::Error> for Failure {
-    fn from(error: mozzi_batch::Error) -> Self {
+impl From<mozzi_engine::Error> for Failure {
+    fn from(error: mozzi_engine::Error) -> Self {
         Failure::Wrong(error.to_string())
     }
 }

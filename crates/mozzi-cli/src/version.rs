@@ -1,6 +1,6 @@
 //! What `mozzi --version` says: the version, the commit, and what this build can do on this machine.
 
-use mozzi_codegen::Shape;
+use mozzi_engine::Shape;
 
 /// The optional formats, and whether this build has them.
 const FEATURES: [(&str, bool); 4] = [

@@ -76,6 +76,14 @@ pub enum Error {
         /// Why.
         reason: &'static str,
     },
+    /// The program of a robot so large.
+    #[error("the program of {quantity} is {error}")]
+    TooLong {
+        /// The quantity's name.
+        quantity: &'static str,
+        /// The bound.
+        error: mozzi_engine::TooLong,
+    },
     /// A wrong number of arrays.
     #[error("{entry} takes {expected} {what}, found {found}")]
     WrongCount {
@@ -108,13 +116,13 @@ pub enum Error {
         /// The kernel.
         entry: String,
         /// The arrays' type.
-        found: mozzi_codegen::Precision,
+        found: mozzi_engine::Precision,
         /// The kernel's type.
-        expected: mozzi_codegen::Precision,
+        expected: mozzi_engine::Precision,
     },
     /// The text could not be emitted.
     #[error(transparent)]
-    Emit(#[from] mozzi_codegen::EmitError),
+    Emit(#[from] mozzi_engine::EmitError),
     /// An error of the robot or the quantity.
     #[error(transparent)]
     Model(#[from] mozzi::Error),

@@ -3,7 +3,7 @@
 use crate::Error;
 use mozzi::quantities::{Dim, Of, Query};
 use mozzi::{Model, Scalar};
-use mozzi_codegen::{Arguments, Precision, Program, Traced, pivot_names, record, record_quantity};
+use mozzi_engine::{Arguments, Precision, Program, Traced, pivot_names, record, record_quantity};
 
 /// States at which the inertias of joints are computed.
 const STATES: u64 = 32;
@@ -28,7 +28,7 @@ pub(crate) fn program(model: &Model, query: Query, precision: Precision, is_pack
     }
     let limits = if kinds > 0 { limits(model, precision)? } else { Vec::new() };
     let inputs: Vec<(&str, usize)> = program.inputs().iter().map(|x| (x.name.as_str(), x.length)).collect();
-    Ok(record(program.name(), &inputs, |arrays| {
+    let program = record(program.name(), &inputs, |arrays| {
         let slices: Vec<&[Traced]> = arrays.iter().map(Vec::as_slice).collect();
         let mut outputs = program.evaluate(&slices);
         let pivots = outputs.split_off(outputs.len() - kinds);
@@ -43,7 +43,8 @@ pub(crate) fn program(model: &Model, query: Query, precision: Precision, is_pack
             }
         }
         program.outputs().iter().map(|output| output.name.as_str()).zip(outputs).collect()
-    }))
+    });
+    program.map_err(|error| Error::TooLong { quantity: declaration.name, error })
 }
 
 /// 1 if each pivot is above its limit, else NaN. The signs of the differences add up to n, or to n − 1 or less.

@@ -1,6 +1,6 @@
 //! The dynamics of very many states on NVIDIA GPUs.
 //!
-//! A [`Source`] is a quantity of a robot as CUDA C: `mozzi-codegen`'s program, one thread for each state. An [`Nvrtc`],
+//! A [`Source`] is a quantity of a robot as CUDA C: `mozzi-engine`'s program, one thread for each state. An [`Nvrtc`],
 //! NVIDIA's run-time compiler, makes a [`Binary`] of it, for which no GPU is needed. A [`Device`] loads it as a
 //! [`Kernel`], which reads and writes arrays where they are, on the caller's stream.
 //!
@@ -28,7 +28,7 @@
 //! ```
 //!
 //! A state gives NaN where the CPU's ways return an error or have another way to compute it: if its mass matrix is
-//! singular to rounding, or if an angle is beyond [`largest_angle`](mozzi_codegen::Precision::largest_angle).
+//! singular to rounding, or if an angle is beyond [`largest_angle`](mozzi_engine::Precision::largest_angle).
 
 mod arch;
 mod binary;

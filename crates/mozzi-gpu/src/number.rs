@@ -1,6 +1,6 @@
 //! The number types of kernels.
 
-use mozzi_codegen::Precision;
+use mozzi_engine::Precision;
 
 /// `f32` or `f64`.
 pub trait Number: Copy + Default + private::Sealed + 'static {

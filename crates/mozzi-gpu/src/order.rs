@@ -2,7 +2,7 @@
 //! several orders, the one in which the fewest values are alive at the same time is taken. Counts of registers for each
 //! order are in docs/performance-log.md.
 
-use mozzi_codegen::{Program, Step, Value};
+use mozzi_engine::{Program, Step, Value};
 use std::collections::BTreeSet;
 
 /// The program in the order in which the fewest values are alive: as recorded, or with the outputs finished joint by
@@ -101,7 +101,7 @@ fn alive(program: &Program) -> usize {
 mod tests {
     use super::*;
     use mozzi::quantities::{InverseDynamics, InverseDynamicsVjp, Query};
-    use mozzi_codegen::{Arguments, Traced, record, record_quantity};
+    use mozzi_engine::{Arguments, Traced, record, record_quantity};
 
     #[test]
     fn a_sum_of_products_needs_two_values() {
@@ -109,7 +109,8 @@ mod tests {
         let program = record("test", &[("x", 10)], |x| {
             let sines: Vec<Traced> = x[0].iter().map(|x| *x / Traced::from(3.0)).collect();
             vec![("y", vec![sines.iter().fold(Traced::from(1.0), |sum, &x| sum / x)])]
-        });
+        })
+        .expect("short");
         assert_eq!(alive(&program), 10);
         let found = ordered(program.clone(), 1);
         assert_eq!(alive(&found), 2);

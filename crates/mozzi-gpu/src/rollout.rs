@@ -5,7 +5,7 @@ use crate::source::Source;
 use crate::{Argument, Error, Form, guarded, manifold, order};
 use mozzi::Model;
 use mozzi::quantities::ForwardDynamics;
-use mozzi_codegen::{Block, CudaLayout, Language, Precision, emit_programs};
+use mozzi_engine::{Block, CudaLayout, Language, Precision, emit_programs};
 
 /// Threads of a block.
 const THREADS: usize = 128;

@@ -6,7 +6,7 @@ use crate::order;
 use crate::{Arch, Binary, Error, Number, Nvrtc};
 use mozzi::Model;
 use mozzi::quantities::Query;
-use mozzi_codegen::{Block, CudaLayout, Language, Precision, Program, emit_programs};
+use mozzi_engine::{Block, CudaLayout, Language, Precision, Program, emit_programs};
 use std::sync::Arc;
 
 /// How a kernel's numbers are stored. By default `f32`, by rows, full matrices.
@@ -61,7 +61,7 @@ impl Source {
     ///
     /// # Errors
     /// [`Error::Unsupported`] for tasks, and for packed forms of quantities that have no symmetric matrix; the errors
-    /// of [`record_quantity`](mozzi_codegen::record_quantity) and [`emit`](mozzi_codegen::emit).
+    /// of [`record_quantity`](mozzi_engine::record_quantity) and [`emit`](mozzi_engine::emit).
     pub fn new<'q>(model: &Model, query: impl Into<Query<'q>>, form: Form) -> Result<Source, Error> {
         let program = guarded::program(model, query.into(), form.precision, form.is_packed)?;
         let program = order::ordered(program, model.n());

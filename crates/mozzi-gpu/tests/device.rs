@@ -5,7 +5,7 @@ use crate::common;
 
 use common::{LAYOUTS, PRECISIONS, embedded, error, form, inputs, quantities, robots, transposed};
 use mozzi::quantities::{InverseDynamics, Query};
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Device, DeviceArray, Error, Kernel, Number, Source};
 
 fn device() -> Option<Device> {

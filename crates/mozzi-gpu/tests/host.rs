@@ -11,7 +11,7 @@ use mozzi::quantities::{
 };
 use mozzi::testing::{limbs, tree};
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia, Sym3, Vec3};
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Error, Form, Source};
 
 /// Two whole warps and a part of one.

@@ -5,7 +5,7 @@ use crate::common;
 
 use common::{LAYOUTS, PRECISIONS, embedded, form, nvrtc, quantities, robots};
 use mozzi::quantities::{ForwardDynamics, InverseDynamics, MassMatrix, Query};
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Arch, Device, Error, Nvrtc, Source};
 use std::sync::Arc;
 

@@ -8,7 +8,7 @@ use common::{LAYOUTS, PRECISIONS, embedded, error, nvrtc, transposed};
 use mozzi::simulation::{Method, Rollout};
 use mozzi::testing::{Random, four_bar, state};
 use mozzi::{Base, Model};
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Arch, Source};
 
 const ROBOTS: usize = 37;

@@ -6,7 +6,7 @@ use crate::failure::of_model;
 use crate::numpy::Element;
 use crate::signature::Slot;
 use mozzi::{Environment, FrameId, Twist, Vec3, Wrench};
-use mozzi_batch::BatchEnvironment;
+use mozzi_engine::BatchEnvironment;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

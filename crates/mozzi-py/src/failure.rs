@@ -63,11 +63,11 @@ pub fn of_one_motion(error: mozzi_motion::Error, index: usize, leading: &[usize]
 }
 
 /// An error of a batch; the error of a state includes its index along the leading axes.
-pub fn of_batch(error: mozzi_batch::Error, leading: &[usize]) -> PyErr {
+pub fn of_batch(error: mozzi_engine::Error, leading: &[usize]) -> PyErr {
     match error {
-        mozzi_batch::Error::State { index, source } => of_state(source, index, leading),
-        mozzi_batch::Error::Model(error) => of_model(error),
-        error @ mozzi_batch::Error::Threads { .. } => PyRuntimeError::new_err(error.to_string()),
+        mozzi_engine::Error::State { index, source } => of_state(source, index, leading),
+        mozzi_engine::Error::Model(error) => of_model(error),
+        error @ mozzi_engine::Error::Threads { .. } => PyRuntimeError::new_err(error.to_string()),
         error => PyValueError::new_err(error.to_string()),
     }
 }

@@ -3,7 +3,7 @@
 use crate::model::PyModel;
 use mozzi::Model;
 use mozzi::quantities::Query;
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Binary, Device, Error, Form, Kernel, Nvrtc, Rollout, RolloutArrays, Source, Steps, Stream};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;

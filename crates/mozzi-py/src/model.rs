@@ -10,8 +10,7 @@ use crate::{html, load};
 
 use mozzi::FrameId;
 use mozzi::quantities::{Of, Query};
-use mozzi_batch::Engine;
-use mozzi_codegen::Refusal;
+use mozzi_engine::{Engine, Refusal};
 use mozzi_text::scalar;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -55,7 +54,7 @@ impl PyModel {
         let model = &self.0.model;
         let query = |(name, frame): &Asked| self.query(name, frame.as_deref());
         let queries = names.iter().map(query).collect::<PyResult<Vec<_>>>()?;
-        let code = mozzi_batch::compile(model, &queries).map_err(of_model)?;
+        let code = mozzi_engine::compile(model, &queries).map_err(of_model)?;
         let mut robot = Robot::new(model.clone());
         robot.compiled = Some(Machine { code, names, threads });
         Ok(PyModel(robot))

@@ -70,7 +70,7 @@ unsafe impl Sync for Api {}
 static API: PyOnceLock<Api> = PyOnceLock::new();
 
 /// Number types that NumPy's arrays and mozzi share.
-pub trait Element: mozzi_batch::Number + Default {
+pub trait Element: mozzi_engine::Number + Default {
     /// NumPy's name for it.
     const NAME: &'static str;
     /// NumPy's type number.

@@ -5,7 +5,7 @@ use crate::numpy::Element;
 use crate::threads::Threads;
 use mozzi::quantities::Query;
 use mozzi::{Environment, Error, FrameId, Model, fast};
-use mozzi_batch::{Batch, Compiled};
+use mozzi_engine::{Batch, Compiled};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -12,9 +12,9 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::Model;
 use mozzi::quantities::{LIST, Query};
-use mozzi_codegen::{
-    Arguments, Count, Kernel, LONGEST_TEXT, Language, Precision, Rates, Refusal, Shape, SourceFile, emit, estimate,
-    record_quantity,
+use mozzi_engine::{
+    Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Precision, Refusal, Shape, SourceFile, emit,
+    estimate, record_quantity,
 };
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -116,7 +116,7 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
         base_acceleration: is_argument(Argument::BaseAcceleration),
         about: is_argument(Argument::About),
         wrenches: &frames,
-        rates: if arguments.jvp { Rates::All } else { Rates::None },
+        derivative: if arguments.jvp { Derivative::RATES } else { Derivative::None },
     };
     let mut queries = arguments.quantity.clone();
     if queries.is_empty() {

@@ -23,7 +23,7 @@ use mozzi::simulation::{
     Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned,
 };
 use mozzi::{Model, Trajectory};
-use mozzi_batch::{Compiled, Engine, compile};
+use mozzi_engine::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};
 use mozzi_motion::trajectories::Hold;
 use mozzi_report::{Motion, Touches};

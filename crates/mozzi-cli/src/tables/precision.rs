@@ -1,6 +1,6 @@
 //! The number types of files.
 
-use mozzi_batch::Number;
+use mozzi_engine::Number;
 
 /// A number type of files, batches and GPUs.
 pub trait Precision: Number + mozzi_gpu::Number {

@@ -8,7 +8,7 @@ mod page;
 mod rollout;
 
 use cases::Arguments;
-use mozzi_codegen::Precision;
+use mozzi_engine::Precision;
 use mozzi_gpu::{Device, Form, Nvrtc, Source};
 use std::error::Error;
 use std::process::ExitCode;

@@ -3,7 +3,7 @@
 use super::Speed;
 use super::cases::Robot;
 use mozzi::quantities::Query;
-use mozzi_codegen::CudaLayout;
+use mozzi_engine::CudaLayout;
 use mozzi_gpu::{Device, DeviceArray, Number, Source};
 use std::error::Error;
 use std::time::Instant;
@@ -151,7 +151,7 @@ fn lower_triangle(M: &[f64]) -> Vec<f64> {
 pub fn bandwidth(device: &Device) -> Result<f64, Box<dyn Error>> {
     const NUMBERS: usize = 1 << 28;
     const TIMES: usize = 20;
-    let program = mozzi_codegen::record("copy", &[("x", 8)], |x| vec![("y", x[0].clone())]);
+    let program = mozzi_engine::record("copy", &[("x", 8)], |x| vec![("y", x[0].clone())]).expect("short");
     let form = mozzi_gpu::Form { layout: CudaLayout::Columns, ..mozzi_gpu::Form::default() };
     let kernel = device.kernel(&Source::of_program("plain", &program, form)?)?;
     let (from, mut to) = (device.zeros::<f32>(NUMBERS)?, device.zeros::<f32>(NUMBERS)?);

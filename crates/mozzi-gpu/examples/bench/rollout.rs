@@ -1,7 +1,7 @@
 //! Seconds of rollouts.
 
 use super::cases::Robot;
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Device, Rollout, RolloutArrays, Source, Steps, Stream};
 use std::error::Error;
 use std::time::Instant;

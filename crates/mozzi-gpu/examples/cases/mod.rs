@@ -6,7 +6,7 @@ use mozzi::quantities::{
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, InverseDynamicsVjp, MassMatrix, Query,
 };
 use mozzi::{Base, Model};
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::Form;
 use std::error::Error;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! What a card can do, from NVIDIA's data sheets.
 
 use super::Count;
-use mozzi_codegen::Precision;
+use mozzi_engine::Precision;
 
 /// A card's figures.
 pub struct Card {

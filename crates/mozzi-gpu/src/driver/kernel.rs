@@ -4,7 +4,7 @@ use super::{Device, DeviceArray, failed};
 use crate::{Binary, Error, Number, Source};
 use cudarc::driver::result;
 use cudarc::driver::sys;
-use mozzi_codegen::CudaLayout;
+use mozzi_engine::CudaLayout;
 use std::ffi::{CString, c_void};
 use std::sync::Arc;
 

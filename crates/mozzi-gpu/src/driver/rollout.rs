@@ -2,7 +2,7 @@
 
 use super::{Device, Kernel, Stream};
 use crate::{Binary, Error, Number, Source};
-use mozzi_codegen::Precision;
+use mozzi_engine::Precision;
 use std::ffi::c_void;
 
 /// Rollouts of many robots of one model: see [`Source::rollout`].
@@ -23,7 +23,7 @@ pub struct Steps {
 }
 
 /// Addresses of a device's arrays. Each robot's part is a row, or a column in layout
-/// [`Columns`](mozzi_codegen::CudaLayout::Columns).
+/// [`Columns`](mozzi_engine::CudaLayout::Columns).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RolloutArrays {
     /// θ\[0\], nq numbers a robot.

@@ -1,13 +1,13 @@
 //! Kernels compiled by g++ and run on the host, a warp's threads as threads of the system.
 
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::Source;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// The parts of CUDA that the texts use.
-const HOST: &str = include_str!("../../../mozzi-codegen/tests/harness/cuda_host.hpp");
+const HOST: &str = include_str!("../../../mozzi-engine/tests/harness/cuda_host.hpp");
 
 /// Arrays from and to the test.
 const ARRAYS: &str = r#"

@@ -8,7 +8,7 @@ use mozzi::quantities::{
     Query,
 };
 use mozzi::{Base, Model};
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Form, Nvrtc};
 use std::path::{Path, PathBuf};
 

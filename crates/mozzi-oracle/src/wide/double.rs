@@ -126,7 +126,7 @@ fn series(z: Double, first: usize) -> Double {
 }
 
 impl Scalar for Double {
-    type Four = [Self; 4];
+    type Lanes<const L: usize> = [Self; L];
     const DIGITS: u32 = 107;
     fn from_f64(x: f64) -> Self {
         Double { high: x, low: 0.0 }

@@ -63,7 +63,7 @@ impl Neg for Octuple {
 }
 
 impl Scalar for Octuple {
-    type Four = [Self; 4];
+    type Lanes<const L: usize> = [Self; L];
     const DIGITS: u32 = 237;
     fn from_f64(x: f64) -> Self {
         Octuple(f256::from(x))

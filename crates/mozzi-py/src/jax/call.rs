@@ -1,16 +1,13 @@
-//! One call of JAX: shapes are checked, then values and gradients of all states are computed by a batch, other
-//! derivatives state by state in `f64`.
+//! One call of JAX: shapes are checked, then a batch computes values and derivatives of all states, derivatives in
+//! `f64`.
 
-use super::derivative::{Derivative, vjp_of};
-use super::evaluate::Scratch;
 use super::registry::{self, Batched, Entry};
-use super::tangent::position_gradient;
 use crate::failure::place;
 use crate::numpy::Element;
 use mozzi::Model;
 use mozzi::quantities::{Of, Query};
-use mozzi_batch::BatchEnvironment;
-use rayon::prelude::*;
+use mozzi_engine::{BatchEnvironment, Product};
+use std::borrow::Cow;
 
 /// The constants of a call.
 pub struct Attributes<'a> {
@@ -46,8 +43,6 @@ struct Expected {
 
 /// The most axes of a quantity at one state.
 const MOST_AXES: usize = 3;
-/// States from which on threads share the work of derivatives without a batch.
-const FEW: usize = 8;
 
 impl Expected {
     fn new(kind: &'static str, name: &'static str, shape: impl Iterator<Item = usize>) -> Self {
@@ -97,7 +92,6 @@ pub fn run<T: Element + Batched>(
     let expected = expected(&entry.model, &query, attributes);
     let leading = check(&expected, arguments)?;
     let states: usize = leading.iter().product();
-    let derivative = Derivative { entry, query, has_parameters: attributes.has_parameters, wanted: attributes.wanted };
     let lengths: Vec<usize> = match attributes.wanted {
         0 => query.output_lengths(&entry.model).collect(),
         wanted => expected.iter().enumerate().filter(|(k, _)| wanted >> k & 1 == 1).map(|(_, x)| x.length()).collect(),
@@ -109,14 +103,11 @@ pub fn run<T: Element + Batched>(
     if states == 0 {
         return Ok(());
     }
-    let is_plain = attributes.along == [0; 2];
-    match (attributes.wanted, vjp_of(&query)) {
-        (0, _) if is_plain => value(entry, &query, attributes, arguments, results, &leading),
-        (_, Some(vjp)) if is_plain && !attributes.has_parameters => {
-            gradient(entry, vjp, attributes, arguments, results, &leading)
-        }
-        _ => each_state(&derivative, attributes, &expected, arguments, results, &leading),
+    match (attributes.along, attributes.wanted) {
+        ([0, 0], 0) => value(entry, &query, attributes, arguments, results),
+        _ => derivative(entry, &query, attributes, arguments, results, &lengths, states),
     }
+    .map_err(|error| of_batch(error, &leading))
 }
 
 /// The arguments of a call with these attributes.
@@ -165,15 +156,11 @@ fn numbers(shape: &[impl ToString]) -> Vec<String> {
     shape.iter().map(ToString::to_string).collect()
 }
 
-/// The error of one of many states.
-fn of_state(index: usize, leading: &[usize], error: impl ToString) -> String {
-    let error = error.to_string();
-    if leading.is_empty() { error } else { format!("state [{}]: {error}", place(index, leading)) }
-}
-
-fn of_batch(error: mozzi_batch::Error, leading: &[usize]) -> String {
+/// A batch's error in words, with the place of the state among the leading axes.
+fn of_batch(error: mozzi_engine::Error, leading: &[usize]) -> String {
     match error {
-        mozzi_batch::Error::State { index, source } => of_state(index, leading, source),
+        mozzi_engine::Error::State { source, .. } if leading.is_empty() => source.to_string(),
+        mozzi_engine::Error::State { index, source } => format!("state [{}]: {source}", place(index, leading)),
         other => other.to_string(),
     }
 }
@@ -184,97 +171,76 @@ fn value<T: Element + Batched>(
     attributes: &Attributes,
     arguments: &[Argument<T>],
     mut results: Vec<&mut [T]>,
-    leading: &[usize],
-) -> Result<(), String> {
+) -> Result<(), mozzi_engine::Error> {
     let inputs: Vec<&[T]> = arguments.iter().map(|argument| argument.numbers).collect();
     let (inputs, parameters) = inputs.split_at(query.declaration().inputs.len());
     let own = BatchEnvironment::from(entry.model.environment());
     let environment = BatchEnvironment { parameters: parameters.first().copied(), ..own };
-    let batch = entry.batch::<T>(attributes.threads as usize)?;
-    batch.compute(*query, inputs, &environment, &mut results).map_err(|error| of_batch(error, leading))
+    entry.batch::<T>(attributes.threads as usize)?.compute(*query, inputs, &environment, &mut results)
 }
 
-/// wᵀ∂f by the quantity's own kernel.
-fn gradient<T: Element + Batched>(
+/// A product of derivatives by the arrays' numbers.
+fn derivative<T: Element + Batched>(
     entry: &Entry,
-    vjp: Query,
+    query: &Query,
     attributes: &Attributes,
-    arguments: &[Argument<T>],
-    results: Vec<&mut [T]>,
-    leading: &[usize],
-) -> Result<(), String> {
-    let (model, states) = (&entry.model, leading.iter().product::<usize>());
-    let is_flat = model.configuration_space().is_flat();
-    let is_direct = |k: usize| attributes.wanted >> k & 1 == 1 && (k > 0 || is_flat);
-    let mut further: [Vec<T>; 3] = Default::default();
-    for (_, table) in further.iter_mut().enumerate().filter(|(k, _)| !is_direct(*k)) {
-        table.resize(states * model.n(), T::default());
-    }
-    let mut results = results.into_iter();
-    let mut by_positions = (attributes.wanted & 1 == 1 && !is_flat).then(|| results.next()).flatten();
-    let mut tables: Vec<&mut [T]> = Vec::with_capacity(3);
-    for (k, table) in further.iter_mut().enumerate() {
-        match is_direct(k).then(|| results.next()).flatten() {
-            Some(result) => tables.push(result),
-            None => tables.push(table),
-        }
-    }
-    let inputs: Vec<&[T]> = arguments.iter().map(|argument| argument.numbers).collect();
-    let batch = entry.batch::<T>(attributes.threads as usize)?;
-    let found = batch.compute(vjp, &inputs, &model.environment().into(), &mut tables);
-    found.map_err(|error| of_batch(error, leading))?;
-    if let Some(out) = &mut by_positions {
-        let rows = inputs[0].chunks_exact(model.nq()).zip(tables[0].chunks_exact(model.n()));
-        for ((theta, along), out) in rows.zip(out.chunks_exact_mut(model.nq())) {
-            position_gradient(model, theta, along, out);
-        }
-    }
-    Ok(())
-}
-
-/// State by state, in `f64`.
-fn each_state<T: Element + Batched>(
-    derivative: &Derivative,
-    attributes: &Attributes,
-    expected: &[Expected],
     arguments: &[Argument<T>],
     mut results: Vec<&mut [T]>,
-    leading: &[usize],
-) -> Result<(), String> {
-    let states: usize = leading.iter().product();
-    let own = derivative.query.declaration().inputs.len() + usize::from(attributes.has_parameters);
-    let one = |scratch: &mut Scratch, state: usize| {
-        let at = |k: usize| -> Vec<f64> {
-            let length = expected[k].length();
-            arguments[k].numbers[state * length..][..length].iter().map(|x| x.to_f64()).collect()
-        };
-        let x: Vec<Vec<f64>> = (0..own).map(at).collect();
-        let mut next = own;
-        let along = attributes.along.map(|mask| {
-            let changed = |k: usize| {
-                if mask >> k & 1 == 0 {
-                    return vec![0.0; x[k].len()];
-                }
-                next += 1;
-                at(next - 1)
-            };
-            (mask != 0).then(|| (0..own).map(changed).collect())
-        });
-        let w: Vec<Vec<f64>> = (next..arguments.len()).map(at).collect();
-        derivative.at(&x, along, &w, scratch).map_err(|error| of_state(state, leading, error))
-    };
-    let found: Vec<Result<Vec<Vec<f64>>, String>> = if attributes.threads == 1 || states < FEW {
-        let mut scratch = Scratch::default();
-        (0..states).map(|state| one(&mut scratch, state)).collect()
-    } else {
-        (0..states).into_par_iter().map_init(Scratch::default, one).collect()
-    };
-    for (state, found) in found.into_iter().enumerate() {
-        for (result, found) in results.iter_mut().zip(found?) {
-            let length = found.len();
-            let numbers = result[state * length..][..length].iter_mut().zip(found);
-            numbers.for_each(|(place, x)| *place = T::from_f64(x));
+    lengths: &[usize],
+    states: usize,
+) -> Result<(), mozzi_engine::Error> {
+    let inputs = query.declaration().inputs.len();
+    let set = |bits: i64| bits as u32;
+    let along = attributes.along.map(set);
+    let of = Product { along, gradient: set(attributes.wanted) };
+    let own = inputs + usize::from(attributes.has_parameters);
+    let (x, mut rest) = arguments.split_at(own);
+    let mut further = Vec::with_capacity(3);
+    for count in along.map(|set| set.count_ones() as usize).into_iter().filter(|&count| count > 0) {
+        let (these, others) = rest.split_at(count);
+        further.push(table(these, states));
+        rest = others;
+    }
+    if of.gradient != 0 {
+        further.push(table(rest, states));
+    }
+    let x: Vec<Cow<[f64]>> = x.iter().map(|x| table(std::slice::from_ref(x), states)).collect();
+    let x: Vec<&[f64]> = x.iter().map(|x| &**x).collect();
+    let further: Vec<&[f64]> = further.iter().map(|table| &**table).collect();
+    let (x, parameters) = x.split_at(inputs);
+    let around = BatchEnvironment::from(entry.model.environment());
+    let environment = BatchEnvironment { parameters: parameters.first().copied(), ..around };
+    let batch = entry.batch::<f64>(attributes.threads as usize)?;
+    if let [result] = &mut results[..]
+        && let Some(result) = T::as_f64_mut(result)
+    {
+        return batch.product(*query, x, of, &further, &environment, result);
+    }
+    let mut product = vec![0.0; results.iter().map(|result| result.len()).sum()];
+    batch.product(*query, x, of, &further, &environment, &mut product)?;
+    for (state, mut row) in product.chunks_exact(lengths.iter().sum()).enumerate() {
+        for (result, &length) in results.iter_mut().zip(lengths) {
+            let (these, others) = row.split_at(length);
+            let places = result[state * length..][..length].iter_mut().zip(these);
+            places.for_each(|(place, &x)| *place = T::from_f64(x));
+            row = others;
         }
     }
     Ok(())
+}
+
+/// One table of `f64`, each row these arguments' rows one after the other.
+fn table<'a, T: Element + Batched>(arguments: &[Argument<'a, T>], states: usize) -> Cow<'a, [f64]> {
+    if let [one] = arguments {
+        let converted = || one.numbers.iter().map(|x| x.to_f64()).collect();
+        return T::as_f64(one.numbers).map_or_else(converted, Cow::Borrowed);
+    }
+    let mut table = Vec::with_capacity(arguments.iter().map(|argument| argument.numbers.len()).sum());
+    for state in 0..states {
+        for argument in arguments {
+            let width = argument.numbers.len() / states;
+            table.extend(argument.numbers[state * width..][..width].iter().map(|x| x.to_f64()));
+        }
+    }
+    Cow::Owned(table)
 }

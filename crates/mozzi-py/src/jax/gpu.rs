@@ -2,7 +2,7 @@
 
 use super::{call, registry};
 use crate::gpu::loaded;
-use mozzi_codegen::{CudaLayout, Precision};
+use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Argument, Device, Form, Kernel};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -8,7 +8,7 @@ use super::call::{self, Argument, Attributes};
 use super::gpu;
 use super::registry::Batched;
 use crate::numpy::Element;
-use mozzi_codegen::Precision;
+use mozzi_engine::Precision;
 use mozzi_gpu::Stream;
 use pyo3::ffi;
 use pyo3::prelude::*;

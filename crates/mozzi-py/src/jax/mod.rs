@@ -1,14 +1,12 @@
 //! `mozzi.jax`: a handler that XLA calls, and what its Python side needs to know of a quantity.
 //!
-//! One handler computes every quantity and its derivatives, which its attributes choose: see [`derivative`].
+//! One handler computes every quantity and its derivatives, which its attributes choose: see [`call`] and
+//! [`Product`](mozzi_engine::Product).
 
 mod call;
-mod derivative;
-mod evaluate;
 mod gpu;
 mod interface;
 mod registry;
-mod tangent;
 
 use crate::failure::of_model;
 use crate::model::PyModel;

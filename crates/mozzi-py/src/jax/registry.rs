@@ -3,52 +3,40 @@
 //!
 //! A robot is never removed: a program that JAX keeps may be called at any time. It takes some kilobytes.
 
-use mozzi::{Dual, Model};
-use mozzi_batch::{Batch, Number};
+use mozzi::Model;
+use mozzi_engine::{Batch, Error, Number};
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock};
 
 static ROBOTS: RwLock<BTreeMap<i64, Arc<Entry>>> = RwLock::new(BTreeMap::new());
 
-/// A robot, its batches, and its constants as dual numbers.
+/// A robot and its batches.
 pub struct Entry {
     pub model: Model,
-    pub dual: OnceLock<Model<Dual>>,
-    pub twice: OnceLock<Model<Dual<Dual>>>,
-    double: Batches<f64>,
-    single: Batches<f32>,
+    double: Batch<f64>,
+    single: Batch<f32>,
 }
-
-/// Batches by their largest number of threads; 0 for all cores.
-type Batches<T> = Mutex<Vec<(usize, Batch<T>)>>;
 
 /// A number type of batches.
 pub trait Batched: Number {
-    fn batches(entry: &Entry) -> &Batches<Self>;
+    fn batch(entry: &Entry) -> &Batch<Self>;
 }
 impl Batched for f64 {
-    fn batches(entry: &Entry) -> &Batches<f64> {
+    fn batch(entry: &Entry) -> &Batch<f64> {
         &entry.double
     }
 }
 impl Batched for f32 {
-    fn batches(entry: &Entry) -> &Batches<f32> {
+    fn batch(entry: &Entry) -> &Batch<f32> {
         &entry.single
     }
 }
 
 impl Entry {
-    /// The batch on at most this many threads.
-    pub fn batch<T: Batched>(&self, threads: usize) -> Result<Batch<T>, String> {
-        let mut made = T::batches(self).lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, batch)) = made.iter().find(|(known, _)| *known == threads) {
-            return Ok(batch.clone());
-        }
-        let batch = Batch::<T>::of(&self.model);
-        let batch =
-            if threads == 0 { batch } else { batch.with_threads(threads).map_err(|error| error.to_string())? };
-        made.push((threads, batch.clone()));
-        Ok(batch)
+    /// The batch on at most this many threads; 0 for all cores. All share their machine code.
+    pub fn batch<T: Batched>(&self, threads: usize) -> Result<Batch<T>, Error> {
+        let batch = T::batch(self).clone();
+        if threads == 0 { Ok(batch) } else { batch.with_threads(threads) }
     }
 }
 
@@ -66,13 +54,7 @@ pub fn register(model: &Model) -> Result<i64, String> {
     let handle = hash(&format!("{:?}", model.description())); // floats are written with all digits
     let mut robots = ROBOTS.write().unwrap_or_else(PoisonError::into_inner);
     let entry = robots.entry(handle).or_insert_with(|| {
-        Arc::new(Entry {
-            model: model.clone(),
-            dual: OnceLock::new(),
-            twice: OnceLock::new(),
-            double: Mutex::default(),
-            single: Mutex::default(),
-        })
+        Arc::new(Entry { model: model.clone(), double: Batch::of(model), single: Batch::of(model) })
     });
     match entry.model.description() == model.description() {
         true => Ok(handle),

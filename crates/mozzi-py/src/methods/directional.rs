@@ -10,7 +10,7 @@ use crate::results::Results;
 use crate::signature::Slot;
 use crate::threads::Threads;
 use mozzi::quantities::{Input, Query};
-use mozzi_batch::Direction;
+use mozzi_engine::Direction;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

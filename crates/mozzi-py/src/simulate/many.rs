@@ -12,7 +12,7 @@ use crate::threads::Threads;
 use mozzi::quantities::{KineticEnergy, PotentialEnergy, Query};
 use mozzi::simulation::{GravityCompensation, Input, LARGEST, Motion, Options, forward_dynamics_of};
 use mozzi::{Environment, Error, Model};
-use mozzi_batch::{Batch, BatchEnvironment};
+use mozzi_engine::{Batch, BatchEnvironment};
 use pyo3::prelude::*;
 
 /// Steps of all robots together between two checks for an interrupt from Python: a fraction of a second. The number is
@@ -134,16 +134,16 @@ impl Robots<'_> {
     }
 
     /// The same error with steps counted from the beginning; this piece started at this step.
-    fn later(&self, error: mozzi_batch::Error, done: usize) -> PyErr {
+    fn later(&self, error: mozzi_engine::Error, done: usize) -> PyErr {
         match error {
-            mozzi_batch::Error::State {
+            mozzi_engine::Error::State {
                 index,
                 source: Error::Diverged { quantity, joint, value, step, step_size, .. },
             } => {
                 let (step, time) = (done + step, self.options.time(done + step));
                 self.wrong(index, Error::Diverged { quantity, joint, value, step, time, step_size })
             }
-            mozzi_batch::Error::State { index, source: Error::Opened { constraint, residual, time } } => {
+            mozzi_engine::Error::State { index, source: Error::Opened { constraint, residual, time } } => {
                 let time = self.options.time(done) + time;
                 self.wrong(index, Error::Opened { constraint, residual, time })
             }

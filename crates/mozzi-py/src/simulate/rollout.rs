@@ -9,7 +9,7 @@ use crate::numpy::Fresh;
 use crate::results::named;
 use crate::threads::Threads;
 use mozzi::Vec3;
-use mozzi_batch::{BatchGradient, BatchRollout};
+use mozzi_engine::{BatchGradient, BatchRollout};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 

@@ -10,10 +10,11 @@ use crate::dynamics::{add_spring_forces, kinetic_energy, newton_euler, potential
 use crate::fast;
 use crate::kinematics::{body_jacobian, twist_of};
 use crate::linalg::Vec3;
-use crate::model::{Environment, Error, FrameId, Model, Workspace};
+use crate::model::{Environment, Error, FrameId, Model};
 use crate::quantities::{self, Query};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::Workspace;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec;
@@ -23,7 +24,7 @@ use alloc::vec::Vec;
 pub type Powers = [f64; 3];
 
 /// An implementation of θ̈ that replaces the kernels: a program for one robot, with its own gravity and no applied
-/// wrenches, such as `mozzi_batch::Compiled`. In all other cases the kernels are used.
+/// wrenches, such as `mozzi_engine::Compiled`. In all other cases the kernels are used.
 pub trait ForwardDynamics {
     /// The robot.
     fn model(&self) -> &Model;

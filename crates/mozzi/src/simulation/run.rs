@@ -34,7 +34,7 @@ pub struct Simulation<'a> {
     pub options: Options,
     /// The events to locate.
     pub events: Vec<Event<'a>>,
-    /// θ̈ by machine code instead of the kernels, such as `mozzi_batch::Compiled::simulator` returns.
+    /// θ̈ by machine code instead of the kernels, such as `mozzi_engine::Compiled::simulator` returns.
     pub forward_dynamics: Option<&'a dyn ForwardDynamics>,
     /// Contact points and planes.
     pub contacts: Contacts<'a>,

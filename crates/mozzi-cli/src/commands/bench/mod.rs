@@ -12,7 +12,7 @@ use crate::quantity::{hyphenated, is_of_a_frame, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use clap::Args;
 use mozzi::quantities::{Declaration, LIST, Of, Query, Uses};
-use mozzi_batch::Batch;
+use mozzi_engine::Batch;
 use runs::{Data, Run, Subject};
 use std::time::Instant;
 use timing::{Report, Timing};

@@ -8,7 +8,7 @@ use crate::tables::results::arrays;
 use mozzi::quantities::{Declaration, MOST_INPUTS, MOST_OUTPUTS, Query};
 use mozzi::random::Random;
 use mozzi::{Environment, FrameId, Model, Wrench, fast};
-use mozzi_batch::{Batch, BatchEnvironment};
+use mozzi_engine::{Batch, BatchEnvironment};
 use std::hint::black_box;
 
 /// States that are computed one by one.
@@ -129,7 +129,7 @@ impl<'a> Subject<'a> {
             }
             Ok(if is_asked { to_f64(&results) } else { Vec::new() })
         });
-        let instructions = fast::Workspace::new(model).instruction_set();
+        let instructions = if fast::Workspace::new(model).is_fused(&query) { "fma" } else { "portable" };
         let engine = Box::new(move || format!("kernel ({instructions})"));
         Run { way: Way { is_one: true, precision: f64::NAME, threads: 1 }, states: count, compute, engine }
     }

@@ -14,7 +14,7 @@ use crate::{interrupt, json};
 use clap::Args;
 use mozzi::quantities::Query;
 use mozzi::{Environment, FrameId, Model};
-use mozzi_batch::{Batch, BatchEnvironment, Error};
+use mozzi_engine::{Batch, BatchEnvironment, Error};
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};
 

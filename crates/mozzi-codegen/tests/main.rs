@@ -1,9 +1,0 @@
-//! The tests in one program: each links the crate and all that it needs.
-#![allow(clippy::unwrap_used, missing_docs)]
-
-mod common;
-mod controller;
-mod emitted;
-mod harness;
-mod machine_code;
-mod programs;
