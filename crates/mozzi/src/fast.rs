@@ -1,6 +1,5 @@
-//! Every quantity on `f64`, with the instruction set of the machine that runs it: fused multiply-add if the processor
-//! has it, detected once when the [`Workspace`] is made, else plain `f64`. For control loops: no allocation after the
-//! first call.
+//! Every quantity on `f64`; those that control loops call with fused multiply-add ([`has_fused_kernel`]) if the
+//! processor has it, which is detected once when the [`Workspace`] is made. No allocation after the first call.
 //!
 //! Results agree with the plain kernels to rounding, not bit for bit. AVX2 and AVX-512 are deliberately left out: for
 //! one state they make code slower.
@@ -18,7 +17,7 @@
 
 use crate::model::{Environment, Error, FrameId, Model, Pivots};
 use crate::quantities::{
-    Inputs, MassMatrix, Memory, Of, Outputs, Quantity, Query, Subject, are_clear, evaluate as run,
+    self, Inputs, LIST, MassMatrix, Memory, Of, Outputs, Quantity, Query, Subject, are_clear, evaluate as run, place_of,
 };
 use crate::scalar::{Fused, Scalar};
 use crate::spatial::Wrench;
@@ -26,46 +25,45 @@ use alloc::vec::Vec;
 
 /// Memory for [`evaluate`], and the choice of the instruction set.
 #[derive(Clone, Debug)]
-pub struct Workspace(Inner);
-
-#[derive(Clone, Debug)]
-#[allow(clippy::large_enum_variant)] // one per thread, not in lists
-enum Inner {
-    Plain(Memory),
-    /// Made only if the processor has FMA: this proves that the fused entries may be called.
-    #[cfg_attr(not(all(feature = "std", target_arch = "x86_64")), allow(dead_code))] // never made there
-    Fused(Memory<Fused>, Vec<(FrameId, Wrench<Fused>)>),
+pub struct Workspace {
+    /// Made by [`new`](Workspace::new) alone, if the processor has FMA: this proves that the fused entries may be
+    /// called.
+    fused: Option<(Memory<Fused>, Wrenches)>,
+    /// For quantities without a fused entry; made by the first call of one.
+    plain: Option<Memory>,
 }
+
+/// Memory for an environment's wrenches.
+type Wrenches = Vec<(FrameId, Wrench<Fused>)>;
 
 impl Workspace {
     /// Memory for this model.
     pub fn new(model: &Model) -> Self {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         if std::is_x86_feature_detected!("fma") {
-            return Workspace(Inner::Fused(Memory::new(model), Vec::with_capacity(model.frames().len())));
+            let fused = Some((Memory::new(model), Vec::with_capacity(model.frames().len())));
+            return Workspace { fused, plain: None };
         }
         Self::portable(model)
     }
 
     /// Memory for this model, on plain `f64` whatever the processor has: bit for bit the plain kernels' results.
     pub fn portable(model: &Model) -> Self {
-        Workspace(Inner::Plain(Memory::new(model)))
+        Workspace { fused: None, plain: Some(Memory::new(model)) }
     }
 
-    /// "fma" or "portable".
-    pub fn instruction_set(&self) -> &'static str {
-        match self.0 {
-            Inner::Plain(_) => "portable",
-            Inner::Fused(..) => "fma",
-        }
+    /// Whether this quantity is computed with fused multiply-add: by those of [`has_fused_kernel`].
+    pub fn is_fused(&self, query: &Query) -> bool {
+        self.fused.is_some() && has_fused_kernel(query)
     }
 
     /// True if every pivot of this quantity's last call is well above rounding error. If false, [`Model::compute`]
     /// checks each pivot and names what is singular. See [`Pivots`].
     pub fn are_pivots_clear(&self, query: &Query) -> bool {
-        match &self.0 {
-            Inner::Plain(memory) => are_clear(query.declaration(), memory),
-            Inner::Fused(memory, _) => are_clear(query.declaration(), memory),
+        match (&self.fused, &self.plain) {
+            (Some((memory, _)), _) if has_fused_kernel(query) => are_clear(query.declaration(), memory),
+            (_, Some(memory)) => are_clear(query.declaration(), memory),
+            _ => true,
         }
     }
 }
@@ -92,9 +90,10 @@ impl Workspace {
         }
         // leaves the pivots as they are
         evaluate(&Query::from(MassMatrix), model, &[theta], &model.environment(), self, &mut [M]);
-        match &self.0 {
-            Inner::Plain(memory) => singular(query, memory, model.n(), M),
-            Inner::Fused(memory, _) => singular(query, memory, model.n(), M),
+        match (&self.fused, &self.plain) {
+            (Some((memory, _)), _) if has_fused_kernel(query) => singular(query, memory, model.n(), M),
+            (_, Some(memory)) => singular(query, memory, model.n(), M),
+            _ => None,
         }
     }
 }
@@ -119,15 +118,17 @@ pub fn evaluate(
     workspace: &mut Workspace,
     outputs: &mut [&mut [f64]],
 ) {
-    match &mut workspace.0 {
-        Inner::Plain(memory) => query.evaluate_f64(model, inputs, environment, memory, outputs),
-        Inner::Fused(memory, applied) => {
+    match (&mut workspace.fused, ENTRIES[query.index()]) {
+        (Some((memory, applied)), Some(entry)) => {
             let given = query.inputs(inputs).map(as_fused);
             let [x, y, z, w] = query.outputs(outputs);
             let mut found = [as_fused_mut(x), as_fused_mut(y), as_fused_mut(z), as_fused_mut(w)];
-            let entry = ENTRIES[query.index()];
             // SAFETY: a Memory<Fused> is made by `Workspace::new` alone, where the processor has FMA.
             unsafe { entry(&query.subject, model, &given, (environment, applied), memory, &mut found) }
+        }
+        _ => {
+            let memory = workspace.plain.get_or_insert_with(|| Memory::new(model));
+            query.evaluate_f64(model, inputs, environment, memory, outputs);
         }
     }
 }
@@ -156,18 +157,33 @@ pub fn compute(
     Ok(())
 }
 
+/// Whether a quantity has a kernel with fused multiply-add: those that control loops call, and that batches without
+/// machine code do. The others run on plain `f64`: what is inlined into each fused entry, which is everything, takes
+/// long to compile.
+pub fn has_fused_kernel(query: &Query) -> bool {
+    ENTRIES[query.index()].is_some()
+}
+
 /// Compiled for FMA: to be called only if the processor has it.
 type Entry = unsafe fn(&Subject, &Model, &Inputs<Fused>, Around, &mut Memory<Fused>, &mut Outputs<Fused>);
 
 /// The environment, and memory for its wrenches in fused numbers.
-type Around<'a> = (&'a Environment<'a>, &'a mut Vec<(FrameId, Wrench<Fused>)>);
+type Around<'a> = (&'a Environment<'a>, &'a mut Wrenches);
 
 // a static, so that no other crate compiles these kernels again
-static ENTRIES: &[Entry] = {
+static ENTRIES: [Option<Entry>; LIST.len()] = {
     macro_rules! entries {
-        ($($Q:ident)*) => { &[$(fused::<crate::quantities::$Q>),*] };
+        ($($Q:ident)*) => {{
+            let mut all = [None; LIST.len()];
+            $(all[place_of(quantities::$Q::DECLARATION.name)] = Some(fused::<quantities::$Q> as Entry);)*
+            all
+        }};
     }
-    crate::quantities!(entries)
+    entries!(
+        InverseDynamics ForwardDynamics MassMatrix CoriolisMatrix GravityForces BiasForces
+        ForwardKinematics SpaceJacobian BodyJacobian TaskSpaceDynamics ConstrainedForwardDynamics
+        InverseDynamicsDerivatives ForwardDynamicsDerivatives InverseDynamicsVjp ForwardDynamicsVjp
+    )
 };
 
 /// The same kernel, compiled for FMA (and AVX, which it implies).

@@ -54,6 +54,7 @@ pub mod scalar;
 pub mod simulation;
 pub mod spatial;
 pub mod testing;
+mod workspace;
 
 pub use api::{
     BodyFrame, ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, EnergyGradients,
@@ -67,10 +68,11 @@ pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
 pub use model::{
     Base, Description, Environment, Error, Frame, FrameId, Freedom, HomeFrames, Model, Pivots, Place, Screws, Task,
-    TaskFrame, TaskMemory, Workspace, least_is_clear,
+    TaskFrame, TaskMemory, least_is_clear,
 };
 pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};
 pub use simulation::Trajectory;
 pub use spatial::solids::Solid;
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
+pub use workspace::Workspace;

@@ -1,5 +1,5 @@
 //! Simulations allocate only what they record, and the cost of long chains grows only with their length. The
-//! conformance test of `mozzi-batch` checks that quantities do not allocate.
+//! conformance test of `mozzi-engine` checks that quantities do not allocate.
 #![allow(clippy::unwrap_used)]
 
 use mozzi::model::{HomeFrames, Screws};

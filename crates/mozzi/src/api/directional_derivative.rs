@@ -85,9 +85,10 @@ impl Model<f64> {
 #[cfg(test)]
 mod tests {
     use super::integrate;
-    use crate::model::{Model, Workspace};
+    use crate::model::Model;
     use crate::scalar::{Dual, Scalar};
     use crate::testing::{Random, floating_tree, state, tree};
+    use crate::workspace::Workspace;
     use crate::{dynamics as kernel, model::Environment};
     use alloc::vec::Vec;
 

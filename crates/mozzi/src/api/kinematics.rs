@@ -3,9 +3,10 @@
 use crate::kinematics as kernel;
 use crate::kinematics::Jacobian;
 use crate::lie::SE3;
-use crate::model::{Error, FrameId, Model, Workspace};
+use crate::model::{Error, FrameId, Model};
 use crate::quantities::{self as q, Query};
 use crate::spatial::Twist;
+use crate::workspace::Workspace;
 use alloc::vec;
 use alloc::vec::Vec;
 

@@ -90,8 +90,8 @@ impl Model<f64> {
 mod tests {
     use super::*;
     use crate::dynamics as kernel;
-    use crate::model::Workspace;
     use crate::testing::{floating_mixed_tree, floating_tree, mixed_tree, moving, state, tree, wrench};
+    use crate::workspace::Workspace;
     use crate::{Dual, Environment};
     use alloc::vec::Vec;
 

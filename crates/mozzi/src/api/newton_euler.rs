@@ -3,8 +3,9 @@
 use crate::dynamics as kernel;
 use crate::kinematics::link_twists;
 use crate::lie::SE3;
-use crate::model::{Base, Environment, Error, Model, Workspace};
+use crate::model::{Base, Environment, Error, Model};
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::{Recursion, Workspace};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DVector;
@@ -55,7 +56,7 @@ impl Model<f64> {
         kernel::inverse_dynamics(self, theta, dtheta, ddtheta, environment, &mut workspace, &mut tau);
         // the kernel uses classical accelerations: convert them back to spatial accelerations relative to {s}
         link_twists(self, theta, dtheta, environment.base_twist, &mut workspace);
-        let Workspace { V, mut dV, F, .. } = workspace;
+        let Workspace { recursion: Recursion { V, mut dV, F, .. }, .. } = workspace;
         for (dV, V) in dV.iter_mut().zip(&V) {
             dV.v -= V.w.cross(V.v);
         }

@@ -9,10 +9,11 @@
 //! direction of an eigenvalue σ of G is (ρ/(σ + ρ))³ (Carpentier, Budhiraja and Mansard 2021). After a step by δ, the
 //! residual b − Gλ is ρδ.
 
-use crate::dynamics::composite_inertias;
+use crate::dynamics::{composite_inertias, fill_mass_matrix};
 use crate::linalg::{dense_ldlt, ldlt};
-use crate::model::{Model, Tie, Workspace};
-use crate::scalar::Scalar;
+use crate::model::{Model, Tie};
+use crate::scalar::{Scalar, pass};
+use crate::workspace::Workspace;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -78,16 +79,17 @@ impl<S: Scalar> ConstraintMemory<S> {
     }
 }
 
+pass! {
 /// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. The workspace holds T_{i,i−1}(θ), the
 /// memory A.
-#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     workspace: &mut Workspace<S>,
     memory: &mut ConstraintMemory<S>,
 ) {
     let (m, n) = (model.ties.rows, model.n());
-    composite_inertias(model, workspace, &mut memory.M);
+    composite_inertias(model, workspace);
+    fill_mass_matrix(model, workspace, &mut memory.M);
     ldlt::factor(&model.structure.pattern, &mut memory.M, &mut workspace.pivots);
     for j in 0..n {
         memory.vector[j] = S::one() / memory.M[j * n + j];
@@ -111,6 +113,7 @@ pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
         G[r * m + r] += *rho;
     }
     dense_ldlt::factor(G, one_over_d);
+}
 }
 
 /// Computes R rows of Y, LᵀY = Aᵀ, and of G's upper triangle. The rows are interleaved because each number of a row

@@ -4,11 +4,12 @@ use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_fo
 use super::jacobian::rows;
 use crate::dynamics::{add_spring_forces, bias_forces, joint_friction};
 use crate::linalg::ldlt;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{
     ACCELERATION, Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output,
 };
 use crate::scalar::Scalar;
+use crate::workspace::Workspace;
 
 /// θ̈ and λ of a robot with constraints:
 ///

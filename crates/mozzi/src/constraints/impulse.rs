@@ -3,9 +3,10 @@
 use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_forces};
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
+use crate::workspace::Workspace;
 
 /// The velocities θ̇⁺ after the constraints have begun to act, and their impulse Λ, m numbers, N s and N m s:
 ///

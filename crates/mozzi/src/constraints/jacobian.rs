@@ -5,10 +5,11 @@ use crate::kinematics::{base_pose, joint_transforms};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::description::Closure;
-use crate::model::{End, Model, Own, TieKind, Way, Workspace};
+use crate::model::{End, Model, Own, TieKind, Way};
 use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, output};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::Workspace;
 
 /// A(θ), m × n by rows, Ȧ(θ, θ̇)θ̇ and φ(θ), m each: A θ̇ = 0 and Aθ̈ + Ȧθ̇ = 0 are the constraints on velocities and
 /// accelerations, φ = 0 those on positions. Rows are those of [`Closure`] in the axes of anchor {a}; rad and m.
@@ -36,8 +37,8 @@ pub fn constraint_jacobian<S: Scalar + From<C>, C: Scalar>(
     rows(model, theta, dtheta, workspace, A, dA_dtheta, phi);
 }
 
+pass! {
 /// The same; the workspace holds T_{i,i−1}(θ).
-#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -68,6 +69,7 @@ pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
             }
         }
     }
+}
 }
 
 /// The row of θ_j − Σ c_k θ_iᵏ = 0.
@@ -151,7 +153,7 @@ fn frame_rows<S: Scalar + From<C>, C: Scalar>(
     }
     let n = model.n();
     for (_, slot) in Way::new(&model.links, ends.map(|end| end.slot)) {
-        add_column(closure, direction, workspace.V[slot], &mut A[model.links[slot - 1].j..], n);
+        add_column(closure, direction, workspace.recursion.V[slot], &mut A[model.links[slot - 1].j..], n);
     }
     if let Some(six) = motion.by_base {
         for (j, J) in six.into_iter().enumerate() {

@@ -3,9 +3,10 @@
 use super::delassus::{ConstraintMemory, factor, solve};
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, THETA, output};
 use crate::scalar::Scalar;
+use crate::workspace::Workspace;
 
 /// P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹, n × n by rows: Pτ = P(Mθ̈ + h) are the equations of motion without λ. Rank n − rank
 /// A.

@@ -2,9 +2,10 @@
 
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{End, Model, Way, Workspace};
+use crate::model::{End, Model, Way};
 use crate::scalar::Scalar;
 use crate::spatial::{JointAxis, Twist};
+use crate::workspace::{Recursion, Workspace};
 
 /// The motion of {b} relative to {a}, in the axes of {a}, with rates taken in {a}.
 pub(super) struct RelativeMotion<S> {
@@ -55,7 +56,7 @@ pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     [a, b]: [&End<C>; 2],
     workspace: &mut Workspace<S>,
 ) -> RelativeMotion<S> {
-    let Workspace { T, V: columns, .. } = workspace;
+    let Workspace { recursion: Recursion { T, V: columns, .. }, .. } = workspace;
     let mut sides = [Side::at(a.T.map(S::from)), Side::at(b.T.map(S::from))];
     for (k, slot) in Way::new(&model.links, [a.slot, b.slot]) {
         let (side, link) = (&mut sides[k], model.link::<S>(slot));

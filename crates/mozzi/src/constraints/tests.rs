@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::model::description::{Closure, Constraint};
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::scalar::Dual;
 use crate::testing::{closed, floating_mixed_tree, mixed_tree, state, tree, wrench};
+use crate::workspace::Workspace;
 use crate::{Vec3, quantities};
 use alloc::vec;
 use alloc::vec::Vec;

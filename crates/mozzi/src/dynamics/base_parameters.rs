@@ -2,9 +2,10 @@
 
 use super::regressor;
 use crate::kinematics::integrate;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::random::Random;
 use crate::spatial::Rounded;
+use crate::workspace::Workspace;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec;

@@ -2,10 +2,11 @@
 
 use super::inverse_dynamics::newton_euler;
 use crate::linalg::Vec3;
-use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::model::{Environment, FrameId, Model};
 use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
+use crate::workspace::Workspace;
 use alloc::vec::Vec;
 
 /// h(θ, θ̇) = c + g: the joint forces at θ̈ = 0, without friction and springs. Wrenches in `environment.applied` and a

@@ -4,10 +4,11 @@ use super::momentum::{composite_inertia, momentum, momentum_matrix, momentum_rat
 use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, THREE, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
+use crate::workspace::Workspace;
 
 /// The centre of mass of the moving links and a floating base, in {s}, m. NaN if they have no mass.
 ///

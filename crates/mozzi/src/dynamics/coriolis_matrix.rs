@@ -1,13 +1,16 @@
 //! The Coriolis matrix of the Christoffel symbols and the rate of the mass matrix (Echeandia and Wensing 2021).
 
 use super::armature::add_coriolis_blocks;
-use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, composite_pass};
+use super::base_rates::BaseRates;
+use super::composite_bodies::add_up_bodies;
+use super::several_axes::add_moved_by_link;
 use crate::kinematics::{base_twist, joint_transforms};
-use crate::linalg::add_transpose;
-use crate::model::{ByRates, Model, Workspace};
+use crate::linalg::{Square, Vec3, add_transpose};
+use crate::model::Model;
 use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output, symmetric};
-use crate::scalar::Scalar;
-use crate::spatial::{AxisRate, CoriolisFactor, Twist};
+use crate::scalar::{Scalar, pass};
+use crate::spatial::{AxisRate, CoriolisFactor, Twist, Wrench, Wrenches};
+use crate::workspace::{ByRates, Composite, Recursion, Workspace};
 
 /// C(θ, θ̇) of the Christoffel symbols, n × n, row-major into `C`: Cθ̇ = c and Ṁ − 2C skew-symmetric; base at rest.
 ///
@@ -30,16 +33,15 @@ pub fn coriolis_matrix<S: Scalar + From<C0>, C0: Scalar>(
     with_base_twist(model, theta, dtheta, base_twist(model, theta, dtheta, Twist::zero()), workspace, C);
 }
 
+pass! {
 /// C for a given twist of the base.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     model: &Model<C0>, theta: &[S], dtheta: &[S], base_twist: Twist<S>, workspace: &mut Workspace<S>, C: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
     let slots = model.links.len() + 1;
-    let Workspace { T, V, by_rates, G_c, B, .. } = workspace;
+    let Workspace { recursion: Recursion { T, V, .. }, composite: Composite { by_rates, G: G_c, B, .. }, .. } = workspace;
     let (T, V, by_rates) = (&T[..slots], &mut V[..slots], &mut by_rates[..slots]);
     let (G_c, B, half) = (&mut G_c[..slots], &mut B[..slots], S::from_f64(0.5));
     V[0] = base_twist;
@@ -55,10 +57,38 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
         }
         (G_c[i], B[i]) = (G, CoriolisFactor::new(G, V[i], G * V[i]));
     }
-    let base = BaseRates { X: base_twist, Y: None, sigma: half };
-    let does = Does { adds_factors: true, adds_wrenches: false, keeps_columns: false, is_composite: false };
-    composite_pass(model, workspace, Matrices { by_theta: None, by_rates: Some(Filled { X: C, base }), M: None }, does);
+    add_up_bodies::<false, S, C0>(model, workspace);
+    fill(model, BaseRates { X: base_twist, Y: None, sigma: half }, workspace, C);
     add_coriolis_blocks(model, dtheta, C);
+}
+}
+
+/// C_ij = A_iᵀ (𝒢ᶜ r_j + 𝓑ᶜ s_j), the bodies those of the outer one of i and j.
+#[cfg_attr(not(debug_assertions), inline(always))]
+#[rustfmt::skip]
+fn fill<S: Scalar + From<C0>, C0: Scalar>(model: &Model<C0>, base: BaseRates<S>, workspace: &Workspace<S>, C: &mut [S]) {
+    let slots = model.links.len() + 1;
+    let (T, pairs) = (&workspace.recursion.T[..slots], &workspace.composite.by_rates[..slots]);
+    let (G, B, mut C) = (&workspace.composite.G[..slots], &workspace.composite.B[..slots], Square::zero(model.n(), C));
+    for (j, joint) in model.outward::<S>() {
+        let (A, f) = (joint.A(), Vec3::zero());
+        let (column, row, m) = (pairs[j].column(G[j], B[j]), G[j] * A, B[j].transpose_mul(A));
+        C[(joint.j, joint.j)] += A * column;
+        let mut load = Wrenches::new([column, row, Wrench { m, f }]);
+        for (link, i, below) in model.steps_to_base::<S>(j) {
+            load = load.carried(&T[link]);
+            let [column, row, Wrench { m, .. }] = load.parts();
+            match below {
+                Some(below) => C.add_pair(below.j, joint.j, [below.A() * column, pairs[i].dot(row, m)]),
+                None => C.add_sixes(joint.j, column.to_array(), base.dot(row, m).to_array()),
+            }
+        }
+    }
+    if model.is_floating() {
+        for (k, e) in Twist::axes().into_iter().enumerate() {
+            C.set_six(k, base.column(e, G[0], B[0]).to_array());
+        }
+    }
 }
 
 /// Ṁ = C + Cᵀ, n × n, row-major into `dM`; base at rest. M does not depend on the pose of a floating base, so its twist

@@ -37,52 +37,12 @@
 //!
 //! The axes of one ball or free joint are carried together: for two of them, j is never beyond i.
 
-use super::composite::{BaseRates, Does, Filled, Matrices, add_moved_by_link, composite_pass};
-use crate::kinematics::{base_motion, base_pose};
-use crate::model::{ByRates, ByTheta, Environment, Model, Workspace};
-use crate::scalar::{Scalar, apart};
+use super::several_axes::add_moved_by_link;
+use crate::kinematics::base_motion;
+use crate::model::{Environment, Model};
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{CoriolisFactor, Twist, Wrench, coriolis_moment};
-
-/// ∂τ/∂θ and, if given, ∂τ/∂θ̇ and M. The workspace holds T_{i,i−1}(θ), and afterwards no more.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[allow(clippy::too_many_arguments)]
-pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>,
-    theta: &[S],
-    dtheta: &[S],
-    ddtheta: &[S],
-    environment: &Environment<S>,
-    workspace: &mut Workspace<S>,
-    d_theta: &mut [S],
-    mut d_dtheta: Option<&mut [S]>,
-    M: Option<&mut [S]>,
-) {
-    outward_pass(model, theta, dtheta, ddtheta, environment, None, workspace);
-    let does = Does { adds_factors: true, adds_wrenches: true, keeps_columns: false, is_composite: false };
-    let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
-    let by_theta = Some(Filled { X: d_theta, base: by_theta });
-    let by_rates = d_dtheta.as_deref_mut().map(|X| Filled { X, base: by_dtheta });
-    composite_pass(model, workspace, Matrices { by_theta, by_rates, M }, does);
-    if let Some(d_dtheta) = d_dtheta {
-        add_damping(model, d_dtheta);
-    }
-}
-
-/// The pairs of a floating base's axes by θ and by θ̇: the axes move with {s}.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(super) fn base_rates<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>,
-    theta: &[S],
-    environment: &Environment<S>,
-    workspace: &Workspace<S>,
-) -> [BaseRates<S>; 2] {
-    let Ad = base_pose(model, theta).inverse().Ad();
-    let (V_s, dV_s) = (Ad * environment.base_twist, Ad * environment.proper_base_acceleration());
-    [
-        BaseRates { X: dV_s, Y: Some(V_s), sigma: S::zero() },
-        BaseRates { X: V_s + workspace.V[0], Y: None, sigma: S::one() },
-    ]
-}
+use crate::workspace::{ByRates, ByTheta, Composite, Recursion, Workspace};
 
 /// Adds d to the diagonal of ∂τ/∂θ̇.
 #[cfg_attr(not(debug_assertions), inline(always))]
@@ -92,7 +52,7 @@ pub(super) fn add_damping<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, d_dt
     }
 }
 
-apart! {
+pass! {
 /// The rates of the axes, and 𝒢, 𝓑 and 𝓕 of each link, from T_{i,i−1}(θ). With a motion `along`, which is X of the base
 /// and the joints' rates x, X of each link and 𝒢X and 𝓑ᵀX in place of 𝒢 and 𝓑: see [`vjp.rs`](super::vjp).
 pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
@@ -101,7 +61,7 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len()]);
     let slots = model.links.len() + 1;
-    let Workspace { V, dV, F, .. } = workspace;
+    let Workspace { recursion: Recursion { V, dV, F, .. }, .. } = workspace;
 
     // base: its own motion
     (V[0], dV[0]) = base_motion(model, theta, dtheta, ddtheta, environment);
@@ -109,9 +69,9 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
     let P = G * V[0];
     F[0] = G * dV[0] - V[0].ad().transpose() * P;
     match along {
-        None => (workspace.G_c[0], workspace.B[0]) = (G, CoriolisFactor::new(G, V[0], P)),
+        None => (workspace.composite.G[0], workspace.composite.B[0]) = (G, CoriolisFactor::new(G, V[0], P)),
         Some((X, _)) => {
-            (workspace.X[0], workspace.U[0], workspace.B[0].f) = (X, G * X, coriolis_moment(G, V[0], P.f, X));
+            (workspace.recursion.X[0], workspace.composite.Q[0], workspace.composite.B[0].f) = (X, G * X, coriolis_moment(G, V[0], P.f, X));
         }
     }
 
@@ -121,7 +81,7 @@ pub(super) fn outward_pass<S: Scalar + From<C>, C: Scalar>(
         true => motions::<true, S, C>(model, dtheta, ddtheta, x, workspace),
         false => motions::<false, S, C>(model, dtheta, ddtheta, x, workspace),
     }
-    let F = &mut workspace.F[..slots];
+    let F = &mut workspace.recursion.F[..slots];
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
@@ -137,7 +97,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, dtheta: &[S], ddtheta: &[S], x: Option<&[S]>, workspace: &mut Workspace<S>,
 ) {
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, X, F, U: Q, carrier, by_theta, by_rates, G_c, B, .. } = workspace;
+    let Workspace { recursion: Recursion { T, V, dV, X, F, carrier, .. }, composite: Composite { Q, by_theta, by_rates, G: G_c, B, .. }, .. } = workspace;
     let (T, V, dV, F) = (&T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots]);
     let (by_theta, by_rates) = (&mut by_theta[..slots], &mut by_rates[..slots]);
     let (G_c, B, X, Q) = (&mut G_c[..slots], &mut B[..slots], &mut X[..slots], &mut Q[..slots]);
@@ -179,12 +139,11 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
+pass! {
 /// Adds θ̈ to quantities computed without it: 𝒱̇ of link i grows by 𝒱̇', the sum of Aθ̈ from the base on. So Ä grows by
 /// `[ad_𝒱̇'_p]` A. 𝓕 of a composite body grows by 𝒢ᶜ𝒱̇'_p, and by 𝒢ᶜAθ̈ of its joint and of each joint beyond.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, ddtheta: &[S], workspace: &mut Workspace<S>) {
-    let Workspace { T, dV, F, U, carrier, by_theta, G_c, .. } = workspace;
+    let Workspace { recursion: Recursion { T, dV, F, carrier, .. }, composite: Composite { dF, by_theta, G: G_c, .. }, .. } = workspace;
     dV[0] = match ddtheta.first_chunk() {
         Some(&dV) if model.is_floating() => Twist::from_array(dV),
         _ => Twist::zero(),
@@ -202,21 +161,22 @@ pub(super) fn add_accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
         let ddA = &mut by_theta[i].r;
         *ddA = *ddA + dV_c.ad() * link.A();
         dV[i] = dV_p + link.A() * ddtheta[link.j];
-        U[i]  = U[i] * ddtheta[link.j];
+        dF[i] = G_c[i] * link.A() * ddtheta[link.j];
     }
-    U[0] = Wrench::zero();
+    dF[0] = Wrench::zero();
     for (i, link) in model.inward::<S>() {
-        let (p, Ad, U_i) = (link.parent, T[i].Ad(), U[i]);
-        F[i] += G_c[i] * (Ad * dV[p]) + U_i;
-        U[p] = Ad.transpose().mul_add(U_i, U[p]);
+        let (p, Ad, dF_i) = (link.parent, T[i].Ad(), dF[i]);
+        F[i] += G_c[i] * (Ad * dV[p]) + dF_i;
+        dF[p] = Ad.transpose().mul_add(dF_i, dF[p]);
     }
-    F[0] += G_c[0] * dV[0] + U[0];
+    F[0] += G_c[0] * dV[0] + dF[0];
+}
 }
 
+pass! {
 /// The links' part of the forces at the joints and a floating base, from the composite wrenches: τ_i = A_iᵀ𝓕ᶜ_i.
-#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, tau: &mut [S]) {
-    let Workspace { F, .. } = workspace;
+    let Workspace { recursion: Recursion { F, .. }, .. } = workspace;
     tau.fill(S::zero());
     if model.is_floating() {
         tau[..6].copy_from_slice(&F[0].to_array());
@@ -224,4 +184,5 @@ pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, wor
     for (i, link) in model.outward::<S>() {
         tau[link.j] += link.A() * F[i];
     }
+}
 }

@@ -3,11 +3,13 @@
 use super::armature::rotor_energy;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::linalg::Vec3;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{Call, DTHETA, Declaration, Kernel, NUMBER, Quantity, THETA, Uses, output};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
+use crate::workspace::Workspace;
 
+pass! {
 /// 𝒦 = ½ Σ 𝒱_iᵀ 𝒢_i 𝒱_i + ½ Σ armature θ̇² = ½ θ̇ᵀMθ̇ in joules, of the moving links and a floating base. `V_s` is the
 /// twist of {s} in its own coordinates (zero for ½ θ̇ᵀMθ̇).
 ///
@@ -15,15 +17,13 @@ use crate::spatial::Twist;
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ not n.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, workspace: &mut Workspace<S>,
 ) -> S {
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
     link_twists(model, theta, dtheta, V_s, workspace);
-    let V = &workspace.V;
+    let V = &workspace.recursion.V;
     let mut twice = S::zero();
     if model.is_floating() {
         twice = V[0].dot(model.base_inertia.map(S::from) * V[0]);
@@ -33,7 +33,9 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
     }
     (twice + rotor_energy(model, dtheta)) * S::from_f64(0.5)
 }
+}
 
+pass! {
 /// 𝒫 = −Σ m_i gᵀp_i + Σ ½k(θ − θ₀)² in joules, p_i the centres of mass of the moving links and a floating base, seen
 /// from {s}; 0 for a mass at the origin of {s} and a spring at rest.
 ///
@@ -41,13 +43,11 @@ pub fn kinetic_energy<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], gravity: Vec3<S>, workspace: &mut Workspace<S>,
 ) -> S {
     model.assert_lengths(theta.len(), []);
-    let T = &mut workspace.T;
+    let T = &mut workspace.recursion.T;
     T[0] = base_pose(model, theta);
     let mut first_moment = Vec3::zero();
     if model.is_floating() {
@@ -63,6 +63,7 @@ pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
         springs += spring.energy(theta);
     }
     springs - gravity.dot(first_moment)
+}
 }
 
 /// See [`kinetic_energy`].

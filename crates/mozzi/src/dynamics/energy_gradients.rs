@@ -6,10 +6,11 @@ use super::spring_forces::add_spring_forces;
 use super::vjp::{add_products_of, from_rest};
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Memory, Quantity, THETA, Uses, VECTOR, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
+use crate::workspace::Workspace;
 
 /// The gradients of [`kinetic_energy`](super::kinetic_energy()) and [`potential_energy`](super::potential_energy()),
 /// `[∂𝒦/∂θ, ∂𝒦/∂θ̇, ∂𝒫/∂θ]`, n numbers each; by θ along the velocities. `V_s` is the twist of {s}. With 𝓟ᶜ the momentum
@@ -49,7 +50,7 @@ pub fn energy_gradients<S: Scalar + From<C>, C: Scalar>(
     add_rotor_forces(model, dtheta, kinetic_by_dtheta);
     // d𝒦 = Σ 𝓟ᵀ∂𝒱: the sources are the momenta
     let momenta = |workspace: &mut Workspace<S>| {
-        for (Q, P) in workspace.U.iter_mut().zip(&workspace.F) {
+        for (Q, P) in workspace.composite.Q.iter_mut().zip(&workspace.recursion.F) {
             *Q = *P;
         }
     };

@@ -1,13 +1,17 @@
 //! Derivatives of the parts of τ by θ: each is ∂τ/∂θ with arguments set to zero.
 
+use super::base_rates::BaseRates;
 use super::bias_forces::take_zeros;
-use super::derivatives::derivatives;
+use super::composite_bodies::add_up_bodies;
+use super::derivatives::outward_pass;
+use super::inverse_dynamics_derivatives::fill_derivatives;
 use crate::kinematics::joint_transforms;
-use crate::linalg::Vec3;
-use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::linalg::{Square, Vec3};
+use crate::model::{Environment, FrameId, Model};
 use crate::quantity::{CONSTANT_VECTOR, Call, D_FORCE, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::Wrench;
+use crate::workspace::Workspace;
 
 /// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric if the base is fixed, since g is a gradient. For a
 /// floating base the derivative is along its body twist, as in
@@ -63,8 +67,8 @@ pub fn mass_matrix_product_derivative<S: Scalar + From<C>, C: Scalar>(
     at_rest(model, theta, Some(x), &Environment::with_gravity(Vec3::zero()), workspace, dMx);
 }
 
+pass! {
 /// ∂τ/∂θ of inverse dynamics at θ̇ = 0, and θ̈ = 0 or as given.
-#[cfg_attr(not(debug_assertions), inline(always))]
 fn at_rest<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -75,8 +79,12 @@ fn at_rest<S: Scalar + From<C>, C: Scalar>(
 ) {
     let zero = take_zeros(workspace);
     joint_transforms(model, theta, workspace);
-    derivatives(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, workspace, d_theta, None, None);
+    outward_pass(model, theta, &zero, ddtheta.unwrap_or(&zero), environment, None, workspace);
+    let base = BaseRates::of_derivatives(model, theta, environment, workspace);
+    add_up_bodies::<true, S, C>(model, workspace);
+    fill_derivatives(model, base, workspace, [Square::zero(model.n(), d_theta)]);
     workspace.vector = zero;
+}
 }
 
 /// See [`gravity_forces_derivative`].

@@ -1,16 +1,19 @@
-//! Forward dynamics: the articulated-body algorithm (Featherstone 2008, section 7.3).
+//! Forward dynamics: the articulated-body algorithm (Featherstone 2008, section 7.3), motions in the classical form of
+//! `inverse_dynamics.rs`.
 
 use super::armature::add_velocity_products;
-use super::inverse_dynamics::carrier_twist;
 use super::joint_friction::joint_friction;
 use super::mass_matrix_solve::forward_dynamics_by_mass_matrix;
+use super::several_axes::carrier_twist;
+use super::siblings;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::linalg::ldlt;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{ACCELERATION, Call, DTHETA, Declaration, Kernel, Quantity, TAU, THETA, Uses, VECTOR, output};
-use crate::scalar::{Scalar, apart};
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::{Articulated, Recursion, Workspace};
 
 /// The joint accelerations θ̈ that the joint forces and torques τ produce:
 ///
@@ -41,17 +44,17 @@ pub fn forward_dynamics<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-apart! {
+pass! {
 /// Ĝ and 𝓕 of each link are its articulated inertia and bias wrench, felt at its joint while all joints beyond it are
-/// free. A joint and its mimic joints on the same link p free their links together: d and the columns ĜA of all add up,
-/// in p's coordinates, at the first of them.
+/// free.
 fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], tau: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
 ) {
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
     joint_sines(model, theta, workspace);
-    let Workspace { V, dV, F, G_hat, vector, .. } = workspace;
+    let Workspace { recursion: Recursion { V, dV, F, .. }, articulated, vector, .. } = workspace;
+    let Articulated { G_hat, u, .. } = articulated;
     vector.fill(S::zero());
     let (V_0, dV_0) = base_motion(model, theta, dtheta, vector, environment);
     let (V_0, dV_0) = V_0.classical_acceleration(dV_0);
@@ -62,140 +65,98 @@ fn articulated_bodies<S: Scalar + From<C>, C: Scalar>(
         G_hat[0] = G.into();
     }
 
-    // f − τ, stored in θ̈ until that is known
-    for j in 0..model.n() {
-        ddtheta[j] = joint_friction(model, j, dtheta[j]) - tau[j];
-    }
+    // τ − f, with ddtheta as memory for f
+    for j in 0..model.n() { ddtheta[j] = joint_friction(model, j, dtheta[j]); }
     add_spring_forces(model, theta, ddtheta);
     add_velocity_products(model, dtheta, ddtheta);
+    for j in 0..model.n() { u[j] = tau[j] - ddtheta[j]; }
 
-    // base to tips: twists, and the wrench for each link's motion if no joint accelerates
     match model.structure.of_one_axis {
         true => motions::<true, S, C>(model, theta, dtheta, workspace),
         false => motions::<false, S, C>(model, theta, dtheta, workspace),
     }
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
-        workspace.F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
+        workspace.recursion.F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;
     }
-    match model.structure.siblings.is_empty() {
-        true => free_joints::<false, S, C>(model, workspace, ddtheta),
-        false => free_joints::<true, S, C>(model, workspace, ddtheta),
-    }
-    let Workspace { dV, F, G_hat, pivots, .. } = &mut *workspace;
-
-    // a floating base: Ĝ𝒱̇ = 𝓕_τ − 𝓕, all joints being free
-    if let (Some(&F_tau), true) = (tau.first_chunk(), model.is_floating()) {
-        let needed = Wrench::from_array(F_tau) - F[0] - G_hat[0] * dV[0];
-        let (ddbase, base_pivots) = ldlt::solve_6(G_hat[0].to_matrix(), needed.to_array());
-        pivots[..6].copy_from_slice(&base_pivots);
-        ddtheta[..6].copy_from_slice(&ddbase);
-        dV[0] += Twist::from_array(ddbase);
-    }
-
-    match model.structure.siblings.is_empty() {
-        true => accelerations::<false, S, C>(model, workspace, ddtheta),
-        false => accelerations::<true, S, C>(model, workspace, ddtheta),
-    }
+    let has_siblings = !model.structure.siblings.is_empty();
+    if has_siblings { siblings::free_joints(model, workspace) } else { free_joints(model, workspace) }
+    if model.is_floating() { free_base(tau, workspace, ddtheta); }
+    if has_siblings { siblings::accelerations(model, workspace, ddtheta) } else { accelerations(model, workspace, ddtheta) }
 }
 }
 
-/// Outward from the base, with no joint accelerating: 𝒱 of each link, its own part of 𝒱̇ (without the parent's), and
-/// its own 𝓕 and 𝒢.
+/// Base to tips, with no joint accelerating: 𝒱 of each link, its velocity-product acceleration c, and its own 𝓕 and 𝒢.
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>,
 ) {
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, carrier, G_hat, sin_cos, .. } = workspace;
-    let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
-    let G_hat = &mut G_hat[..slots];
+    let Workspace { recursion: Recursion { T, V, F, carrier, sin_cos, .. }, articulated, .. } = workspace;
+    let (T, V, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut F[..slots], &sin_cos[..slots]);
+    let (c, G_hat) = (&mut articulated.c[..slots], &mut articulated.G_hat[..slots]);
     for (i, link) in model.outward::<S>() {
         let link = link.among::<ONE_AXIS>();
         let (A, dq) = (link.A(), dtheta[link.j]);
-        let T_i = link.transform_with(sin_cos[i], theta);
-        let V_i = T_i.Ad() * V[link.parent].spin() + A * dq;
+        let T_i = link.transform_with(sin_cos[i], theta);                             // T_{i,i−1}(θ) (8.50)
+        let V_i = T_i.Ad() * V[link.parent].spin() + A * dq;                          // (8.51)
         let V_c = carrier_twist(&link, T_i, V_i, V, &mut carrier[..], i);
-        let (V_i, dV_i) = V_i.classical_acceleration((V_c.ad() * (A * dq)).twist());  // velocity-product acceleration
-        (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
-        F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));
+        let (V_i, c_i) = V_i.classical_acceleration((V_c.ad() * (A * dq)).twist());   // (8.52)
+        (T[i], V[i], c[i]) = (T_i, V_i.twist(), c_i);
+        F[i]     = -(V_i.ad_transpose() * (link.G() * V_i));                          // (8.53)
         G_hat[i] = link.G().into();
     }
 }
 
-/// Inward from the tips: frees each joint and passes the remaining inertia and wrench to the parent.
+/// Tips to base: frees each joint, and hands the inertia and the wrench that are left to its parent.
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
-fn free_joints<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
-) {
+fn free_joints<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>) {
     let slots = model.links.len() + 1;
-    let Workspace { T, dV, F, G_hat, U, u, pivots, .. } = workspace;
-    let (T, dV, F) = (&T[..slots], &dV[..slots], &mut F[..slots]);
-    let (G_hat, U, u) = (&mut G_hat[..slots], &mut U[..slots], &mut u[..slots]);
-    for (i, link) in model.outward::<S>() {
-        if SIBLINGS && model.first_sibling(i) == i {
-            (U[i], pivots[link.j]) = (Wrench::zero(), S::from(model.armature[link.j]));
-        }
-    }
+    let Workspace { recursion: Recursion { T, F, .. }, articulated: Articulated { c, G_hat, U, u }, pivots: d, .. } = workspace;
+    let (T, F, c, G_hat, U) = (&T[..slots], &mut F[..slots], &c[..slots], &mut G_hat[..slots], &mut U[..slots]);
     for (i, link) in model.inward::<S>() {
         let (A, j, p) = (link.A(), link.j, link.parent);
-        let (GA, moves_parent) = (G_hat[i] * A, p > 0 || model.is_floating());
-        let first = if SIBLINGS { model.first_sibling(i) } else { 0 };
-        if first > 0 {
-            let (Ad, F_i) = (T[i].Ad(), G_hat[i].mul_add(dV[i], F[i]));
-            U[first]   = Ad.transpose().mul_add(GA, U[first]);
-            pivots[j]  += A * GA;
-            ddtheta[j] += A * F_i;
-            if moves_parent {
-                G_hat[p] = G_hat[i].congruence_add(Ad, G_hat[p]);
-                F[p]     = Ad.transpose().mul_add(F_i, F[p]);
-            }
-            if i == first {
-                let (GA, one_over_d) = (U[i], S::one() / pivots[j]);
-                u[i] = -ddtheta[j] * one_over_d;
-                U[i] = GA * one_over_d;
-                if moves_parent {
-                    G_hat[p] = G_hat[p].minus_outer(GA, one_over_d);
-                    F[p] += GA * u[i];
-                }
-            }
-            continue;
-        }
-        let d  = A * GA + S::from(model.armature[j]);
-        let one_over_d = S::one() / d;
-        u[i] = -(ddtheta[j] + A * F[i]) * one_over_d;
-        U[i] = GA * one_over_d;
-        pivots[j] = d;
-        if moves_parent {
-            let G_a = G_hat[i].minus_outer(GA, one_over_d);
-            let F_a = G_a.mul_add(dV[i], F[i] + GA * u[i]);
+        let GA = G_hat[i] * A;
+        d[j] = A * GA + S::from(model.armature[j]);                                   // d = AᵀĜA + armature
+        let one_over_d = S::one() / d[j];
+        u[j] = (u[j] - A * F[i]) * one_over_d;                                        // u = (τ − f − Aᵀ𝓕)/d
+        U[i] = GA * one_over_d;                                                       // U = ĜA/d
+        if p > 0 || model.is_floating() {
+            let G_a = G_hat[i].minus_outer(GA, one_over_d);                           // Ĝᵃ = Ĝ − ĜA(ĜA)ᵀ/d
+            let F_a = G_a.mul_add(c[i], F[i] + GA * u[j]);                            // 𝓕ᵃ = 𝓕 + Ĝᵃc + ĜAu
             let Ad = T[i].Ad();
-            G_hat[p] = G_a.congruence_add(Ad, G_hat[p]);
-            F[p]     = Ad.transpose().mul_add(F_a, F[p]);
+            G_hat[p] = G_a.congruence_add(Ad, G_hat[p]);                              // Ĝ_p += AdᵀĜᵃAd
+            F[p]     = Ad.transpose().mul_add(F_a, F[p]);                             // 𝓕_p += Adᵀ𝓕ᵃ
         }
     }
 }
 
-/// Outward from the base: accelerations.
+/// The acceleration of a floating base: Ĝ𝒱̇ = 𝓕_τ − 𝓕, all joints being free.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn free_base<S: Scalar>(tau: &[S], workspace: &mut Workspace<S>, ddtheta: &mut [S]) {
+    let Workspace { recursion: Recursion { dV, F, .. }, articulated: Articulated { G_hat, .. }, pivots, .. } =
+        workspace;
+    let Some(&F_tau) = tau.first_chunk() else { return };
+    let needed = Wrench::from_array(F_tau) - F[0] - G_hat[0] * dV[0];
+    let (ddbase, base_pivots) = ldlt::solve_6(G_hat[0].to_matrix(), needed.to_array());
+    pivots[..6].copy_from_slice(&base_pivots);
+    ddtheta[..6].copy_from_slice(&ddbase);
+    dV[0] += Twist::from_array(ddbase);
+}
+
+/// Base to tips: the accelerations.
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
-fn accelerations<const SIBLINGS: bool, S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, workspace: &mut Workspace<S>, ddtheta: &mut [S],
-) {
+fn accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, ddtheta: &mut [S]) {
     let slots = model.links.len() + 1;
-    let Workspace { T, dV, U, u, .. } = workspace;
-    let (T, dV, U, u) = (&T[..slots], &mut dV[..slots], &U[..slots], &u[..slots]);
+    let Workspace { recursion: Recursion { T, dV, .. }, articulated: Articulated { c, U, u, .. }, .. } = workspace;
+    let (T, dV, c, U) = (&T[..slots], &mut dV[..slots], &c[..slots], &U[..slots]);
     for (i, link) in model.outward::<S>() {
-        let (dV_p, first) = (dV[link.parent], if SIBLINGS { model.first_sibling(i) } else { 0 });
-        let dV_i = T[i].Ad() * dV_p + dV[i];
-        if first == 0 {
-            ddtheta[link.j] = u[i] - dV_i.dot(U[i]);
-        } else if first == i {
-            ddtheta[link.j] = u[i] - dV_p.dot(U[i]);
-        }
-        dV[i] = dV_i + link.A() * ddtheta[link.j];
+        let dV_i = T[i].Ad() * dV[link.parent] + c[i];
+        ddtheta[link.j] = u[link.j] - dV_i.dot(U[i]);                                 // θ̈ = u − Uᵀ𝒱̇
+        dV[i] = dV_i + link.A() * ddtheta[link.j];                                    // 𝒱̇ += Aθ̈
     }
 }
 

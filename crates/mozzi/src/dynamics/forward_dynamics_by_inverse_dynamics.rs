@@ -3,11 +3,12 @@
 use super::armature::set_armature;
 use super::inverse_dynamics::{inverse_dynamics, newton_euler};
 use crate::linalg::{Vec3, ldlt};
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{
     ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;
+use crate::workspace::Workspace;
 
 /// θ̈ from τ: h + f by one call of inverse dynamics, M by n calls with θ̈ = e_i and without springs, and a dense LDLᵀ.
 /// `M` is memory for n × n numbers, `e` for n, and `zeros` holds n of them; `dense` is the pattern of a full matrix.

@@ -2,22 +2,27 @@
 //! 2018).
 
 use super::armature::{add_velocity_product_rates, add_velocity_products};
-use super::articulated_derivatives::articulated_derivatives;
+use super::base_rates::BaseRates;
 use super::bias_forces::take_zeros;
-use super::composite::{Does, Filled, Matrices, composite_pass};
-use super::derivatives::{add_accelerations, add_damping, base_rates, joint_forces, outward_pass};
+use super::composite_bodies::add_up_bodies;
+use super::derivatives::{add_accelerations, add_damping, joint_forces, outward_pass};
 use super::forward_dynamics::forward_dynamics;
+use super::inverse_dynamics_derivatives::fill_derivatives;
 use super::joint_friction::joint_friction;
+use super::long_limbs;
+use super::mass_matrix::fill_mass_matrix;
 use super::spring_forces::{add_spring_forces, add_stiffness};
 use crate::kinematics::joint_transforms;
-use crate::linalg::ldlt;
-use crate::model::{Environment, Model, Workspace};
+use crate::linalg::{Square, ldlt};
+use crate::model::{Environment, Model};
 use crate::quantity::{
     ACCELERATION, Call, D_ACCELERATION, DTHETA, Declaration, Kernel, MATRIX, Quantity, TAU, THETA, Uses, VECTOR,
     output, symmetric,
 };
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
+use crate::workspace::Workspace;
 
+pass! {
 /// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n
 /// × n, row-major: row i is θ̈_i's, and columns are those of
 /// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
@@ -34,18 +39,16 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or a derivative not n².
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
-#[allow(clippy::too_many_arguments)] // forward_dynamics' seven, and the derivatives
 pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], tau: &[S],
-    environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S], [d_theta, d_dtheta, d_tau]: [&mut [S]; 3],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, ddtheta: &mut [S], matrices: [&mut [S]; 3],
 ) {
+    let [d_theta, d_dtheta, d_tau] = matrices;
     let (n, pattern) = (model.n(), &model.structure.pattern);
     model.assert_lengths(theta.len(), [dtheta.len(), tau.len(), ddtheta.len()]);
-    if S::IS_ONE && model.structure.solves_by_bodies {
+    if S::IS_ONE && model.structure.has_long_limbs {
         forward_dynamics(model, theta, dtheta, tau, environment, workspace, ddtheta);
-        articulated_derivatives(model, theta, dtheta, ddtheta, environment, workspace, [d_theta, d_dtheta, d_tau]);
+        long_limbs::derivatives(model, theta, dtheta, ddtheta, environment, workspace, [d_theta, d_dtheta, d_tau]);
         return;
     }
     joint_transforms(model, theta, workspace);
@@ -53,9 +56,10 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     outward_pass(model, theta, dtheta, &zero, environment, None, workspace);
     workspace.vector = zero;
 
+    add_up_bodies::<true, S, C>(model, workspace);
+
     // M θ̈ = τ − h − f
-    let does = Does { adds_factors: true, adds_wrenches: true, keeps_columns: true, is_composite: false };
-    composite_pass(model, workspace, Matrices { by_theta: None, by_rates: None, M: Some(&mut *d_tau) }, does);
+    fill_mass_matrix(model, workspace, d_tau);
     joint_forces(model, workspace, ddtheta);
     add_velocity_products(model, dtheta, ddtheta);
     add_spring_forces(model, theta, ddtheta);
@@ -66,16 +70,14 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
     ldlt::solve(pattern, d_tau, ddtheta);
 
     add_accelerations(model, ddtheta, workspace);
-    let [by_theta, by_dtheta] = base_rates(model, theta, environment, workspace);
-    let by_theta = Some(Filled { X: &mut *d_theta, base: by_theta });
-    let by_rates = Some(Filled { X: &mut *d_dtheta, base: by_dtheta });
-    let does = Does { adds_wrenches: false, keeps_columns: false, is_composite: true, ..does };
-    composite_pass(model, workspace, Matrices { by_theta, by_rates, M: None }, does);
+    let base = BaseRates::of_derivatives(model, theta, environment, workspace);
+    fill_derivatives(model, base, workspace, [Square::zero(n, d_theta), Square::zero(n, d_dtheta)]);
     add_damping(model, d_dtheta);
     add_stiffness(model, theta, d_theta);
     add_velocity_product_rates(model, dtheta, d_dtheta);
     ldlt::solve_rows(pattern, d_tau, [d_theta, d_dtheta]);
     ldlt::invert(pattern, d_tau, &mut workspace.vector);
+}
 }
 
 /// See [`forward_dynamics_derivatives`].

@@ -11,12 +11,13 @@ use super::forward_dynamics::forward_dynamics;
 use super::inverse_dynamics_vjp::from_transforms;
 use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{
     ANY, CONSTANT_VECTOR, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::{Articulated, Recursion, Workspace};
 
 /// The vector-Jacobian products of [`forward_dynamics`](super::forward_dynamics()), `[xᵀ∂θ̈/∂θ, xᵀ∂θ̈/∂θ̇, xᵀ∂θ̈/∂τ]`,
 /// each n long: the gradient of xᵀθ̈ for a constant x, which is n long. `memory` is for 3 n numbers.
@@ -76,15 +77,14 @@ pub(super) fn solved<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
+pass! {
 /// Overwrites x with y, M y = x, by the factors U = ĜA/d and d that forward dynamics leaves (Featherstone 2008, section
 /// 7.3). Wrenches P go inward, accelerations a outward:
 ///
 /// > u = x − AᵀP, P_p += P + U u, then y = u/d − Uᵀa, with a = a_p from the parent, a += A y
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip] // one equation a line
 fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, x: &mut [S]) {
     let slots = model.links.len() + 1;
-    let Workspace { T, dV, F, G_hat, U, pivots, .. } = workspace;
+    let Workspace { recursion: Recursion { T, dV, F, .. }, articulated: Articulated { G_hat, U, .. }, pivots, .. } = workspace;
     let (T, a, P, U) = (&T[..slots], &mut dV[..slots], &mut F[..slots], &U[..slots]);
     P.fill(Wrench::zero());
 
@@ -118,6 +118,7 @@ fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Works
         }
         a[i] = a_i + link.A() * x[j];
     }
+}
 }
 
 /// See [`forward_dynamics_vjp`].

@@ -10,13 +10,14 @@
 use super::bias_forces::take_zeros;
 use super::vjp::{add_products_of, from_rest};
 use crate::kinematics::joint_transforms;
-use crate::model::{FrameId, Model, Workspace};
+use crate::model::{FrameId, Model};
 use crate::quantity::{
     ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
     sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::Workspace;
 
 /// The gradient of wᵀ𝒱_b, 𝒱_b = `J_b`(θ)θ̇ the twist of a frame in its own coordinates with {s} at rest, for a constant
 /// w: `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, each n long; along velocities. `unused` is n numbers of memory. That of the frame's pose,
@@ -83,9 +84,9 @@ fn of_frame<S: Scalar + From<C>, C: Scalar>(
     let frame = model.frame_at::<S>(frame);
     let at_frame = |workspace: &mut Workspace<S>| {
         let (i, T_bi) = (frame.slot, frame.T.inverse());
-        let V = T_bi.Ad() * workspace.V[i];
-        workspace.U[i] = T_bi.Ad().transpose() * w;
-        workspace.B[i].f = frame.T.R * (V.w.cross(w.m) + (V.v + V.v).cross(w.f));
+        let V = T_bi.Ad() * workspace.recursion.V[i];
+        workspace.composite.Q[i] = T_bi.Ad().transpose() * w;
+        workspace.composite.B[i].f = frame.T.R * (V.w.cross(w.m) + (V.v + V.v).cross(w.f));
     };
     joint_transforms(model, theta, workspace);
     let environment = from_rest(Twist::zero());

@@ -2,14 +2,14 @@
 
 use super::armature::{add_rotor_forces, add_velocity_products};
 use super::joint_friction::joint_friction;
+use super::several_axes::carrier_twist;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
-use crate::lie::SE3;
-use crate::linalg::Vec3;
-use crate::model::{Environment, Lifted, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
-use crate::scalar::{Scalar, apart};
-use crate::spatial::{Twist, Wrench};
+use crate::scalar::{Scalar, pass};
+use crate::spatial::Wrench;
+use crate::workspace::{Recursion, Workspace};
 
 /// The joint forces and torques τ that produce the motion (θ, θ̇, θ̈):
 ///
@@ -42,7 +42,7 @@ pub fn inverse_dynamics<S: Scalar + From<C>, C: Scalar>(
     add_spring_forces(model, theta, tau);
 }
 
-apart! {
+pass! {
 /// Adds the links' part of τ and all velocity products to `tau`, without friction, springs and the armature's part of
 /// Mθ̈. Afterwards the workspace holds T, 𝒱, 𝒱̇ and 𝓕 of every link, 𝒱 and 𝒱̇ in the classical form below. 𝓕_0 is the
 /// wrench that a fixed base applies to the chain, or that a floating base, itself included, needs.
@@ -62,11 +62,11 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     // base: its twist and acceleration, with gravity as an upward acceleration; no child wrench is added yet
     let (V_0, dV_0) = base_motion(model, theta, dtheta, ddtheta, environment);
     let (V_0, dV_0) = V_0.classical_acceleration(dV_0);
-    (workspace.V[0], workspace.dV[0]) = (V_0.twist(), dV_0);
-    workspace.F[0] = Wrench::zero();
+    (workspace.recursion.V[0], workspace.recursion.dV[0]) = (V_0.twist(), dV_0);
+    workspace.recursion.F[0] = Wrench::zero();
     if model.is_floating() {
         let G = model.base_inertia.map(S::from);
-        workspace.F[0] = G * dV_0 - V_0.ad_transpose() * (G * V_0);                       // (8.53)
+        workspace.recursion.F[0] = G * dV_0 - V_0.ad_transpose() * (G * V_0);                       // (8.53)
     }
 
     // base to tips: twist and acceleration of each link, and the wrench for its own motion
@@ -75,7 +75,7 @@ pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
         false => motions::<false, S, C>(model, theta, dtheta, ddtheta, workspace),
     }
     let slots = model.links.len() + 1;
-    let (T, F) = (&workspace.T[..slots], &mut workspace.F[..slots]);
+    let (T, F) = (&workspace.recursion.T[..slots], &mut workspace.recursion.F[..slots]);
     for &(frame, F_b) in environment.applied {
         let frame = model.frame_at::<S>(frame);
         F[frame.slot] += frame.T.inverse().Ad().transpose() * F_b;                        // by link i to the environment
@@ -102,7 +102,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S], workspace: &mut Workspace<S>,
 ) {
     let slots = model.links.len() + 1;
-    let Workspace { T, V, dV, F, carrier, sin_cos, .. } = workspace;
+    let Workspace { recursion: Recursion { T, V, dV, F, carrier, sin_cos, .. }, .. } = workspace;
     let (T, V, dV, F, sin_cos) = (&mut T[..slots], &mut V[..slots], &mut dV[..slots], &mut F[..slots], &sin_cos[..slots]);
     for (i, link) in model.outward::<S>() {
         let link = link.among::<ONE_AXIS>();
@@ -116,26 +116,6 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
         (T[i], V[i], dV[i]) = (T_i, V_i.twist(), dV_i);
         F[i] = link.G() * dV_i - V_i.ad_transpose() * (link.G() * V_i);                   // (8.53), its own part
     }
-}
-
-/// The twist that moves a joint's axis, up to a multiple of the axis itself. For the first or only axis of a joint it
-/// is the twist `V_i` of its own link; for a further axis of a ball or a free joint it is that of the joint's parent
-/// about the joint's origin, with v set to zero.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(super) fn carrier_twist<S: Scalar + From<C>, C: Scalar>(
-    link: &Lifted<C, S>,
-    T: SE3<S>,
-    V_i: Twist<S>,
-    V: &[Twist<S>],
-    carrier: &mut [[Twist<S>; 3]],
-    i: usize,
-) -> Twist<S> {
-    if link.has_one_axis() {
-        return V_i;
-    }
-    let parent = if link.is_next() { carrier[link.parent][0].w } else { V[link.parent].w };
-    carrier[i][0] = Twist { w: T.R * parent, v: Vec3::zero() };
-    if link.is_next() { carrier[i][0] } else { V_i }
 }
 
 /// See [`inverse_dynamics`].

@@ -5,11 +5,12 @@ use super::armature::{add_rotor_forces, add_velocity_product_vjp};
 use super::derivatives::outward_pass;
 use super::vjp::{add_products, of_base};
 use crate::kinematics::joint_transforms;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Kernel, Quantity, THETA, Uses, VECTOR, output,
 };
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
+use crate::workspace::Workspace;
 
 /// The vector-Jacobian products of [`inverse_dynamics`](super::inverse_dynamics()), `[xᵀ∂τ/∂θ, xᵀ∂τ/∂θ̇, xᵀ∂τ/∂θ̈]`,
 /// each n long: the gradient of xᵀτ for a constant x, which is n long.
@@ -38,9 +39,8 @@ pub fn inverse_dynamics_vjp<S: Scalar + From<C>, C: Scalar>(
     from_transforms(model, theta, dtheta, ddtheta, x, environment, workspace, [d_theta, d_dtheta, d_ddtheta]);
 }
 
+pass! {
 /// The same; the workspace holds T_{i,i−1}(θ).
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[allow(clippy::too_many_arguments)]
 pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -49,8 +49,9 @@ pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     x: &[S],
     environment: &Environment<S>,
     workspace: &mut Workspace<S>,
-    [d_theta, d_dtheta, d_ddtheta]: [&mut [S]; 3],
+    products: [&mut [S]; 3],
 ) {
+    let [d_theta, d_dtheta, d_ddtheta] = products;
     outward_pass(model, theta, dtheta, ddtheta, environment, Some((of_base(model, x), x)), workspace);
     for j in 0..model.n() {
         d_theta[j] = S::zero();
@@ -63,6 +64,7 @@ pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     add_velocity_product_vjp(model, dtheta, x, d_dtheta);
     add_rotor_forces(model, x, d_ddtheta);
     add_products(model, theta, None, environment, workspace, [d_theta, d_dtheta, d_ddtheta]);
+}
 }
 
 /// See [`inverse_dynamics_vjp`].

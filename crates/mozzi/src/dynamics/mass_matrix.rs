@@ -1,11 +1,16 @@
 //! The mass matrix: composite rigid bodies (Walker and Orin 1982; Featherstone 2008, section 6.2).
 
-use super::composite::{Does, Matrices, composite_pass};
+use super::armature::set_armature;
+use super::composite_bodies::composite_inertias;
 use crate::kinematics::joint_transforms;
-use crate::model::{Model, Workspace};
+use crate::linalg::Square;
+use crate::model::Model;
 use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, symmetric};
-use crate::scalar::{Scalar, apart};
+use crate::scalar::{Scalar, pass};
+use crate::spatial::Twist;
+use crate::workspace::Workspace;
 
+pass! {
 /// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ for each rotor
 /// that several joints turn. kg m², kg m or kg.
 ///
@@ -17,30 +22,43 @@ use crate::scalar::{Scalar, apart};
 ///
 /// # Panics
 /// When θ is not nq long, or `M` not n².
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub fn mass_matrix<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, M: &mut [S]) {
-    let n = model.n();
     model.assert_lengths(theta.len(), []);
-    assert!(M.len() == n * n, "M has {} entries, expected n² = {}", M.len(), n * n);
     joint_transforms(model, theta, workspace);
-    composite_inertias(model, workspace, M);
+    composite_inertias(model, workspace);
+    fill_mass_matrix(model, workspace, M);
+}
 }
 
-apart! {
-/// M; the workspace already holds T_{i,i−1}(θ).
-pub(crate) fn composite_inertias<S: Scalar + From<C>, C: Scalar>(
+/// M_ij = A_iᵀ 𝒢ᶜ_j A_j for i at or before j, from T_{i,i−1} and 𝒢ᶜ in the workspace.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn fill_mass_matrix<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
-    workspace: &mut Workspace<S>,
+    workspace: &Workspace<S>,
     M: &mut [S],
 ) {
-    workspace.G_c[0] = model.base_inertia.map(S::from);
-    for (i, link) in model.outward::<S>() {
-        workspace.G_c[i] = link.G();
+    set_armature(model, M);
+    let slots = model.links.len() + 1;
+    let (mut M, T, G) = (Square::new(model.n(), M), &workspace.recursion.T[..slots], &workspace.composite.G[..slots]);
+    for (j, joint) in model.outward::<S>() {
+        let mut F = G[j] * joint.A(); // moves all beyond joint j
+        M[(joint.j, joint.j)] += joint.A() * F;
+        let mut link = j;
+        for (i, below) in model.to_base::<S>(joint.parent) {
+            F = T[link].Ad().transpose() * F; // seen from its parent
+            M.add_pair(below.j, joint.j, [below.A() * F; 2]);
+            link = i;
+        }
+        if model.is_floating() {
+            F = T[link].Ad().transpose() * F;
+            M.add_sixes(joint.j, F.to_array(), F.to_array());
+        }
     }
-    let does = Does { adds_factors: false, adds_wrenches: false, keeps_columns: false, is_composite: false };
-    composite_pass(model, workspace, Matrices { by_theta: None, by_rates: None, M: Some(M) }, does);
-}
+    if model.is_floating() {
+        for (k, e) in Twist::axes().into_iter().enumerate() {
+            M.set_six(k, (G[0] * e).to_array());
+        }
+    }
 }
 
 /// See [`mass_matrix`].

@@ -2,9 +2,10 @@
 
 use super::mass_matrix::mass_matrix;
 use crate::linalg::ldlt;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, symmetric};
 use crate::scalar::Scalar;
+use crate::workspace::Workspace;
 
 /// M(θ)⁻¹, symmetric, n × n, row-major into `inverse`: the accelerations produced by a unit force at each joint. 1/(kg
 /// m²), 1/(kg m) or 1/kg.

@@ -5,12 +5,13 @@ use super::bias_forces::take_zeros;
 use super::derivatives::outward_pass;
 use super::vjp::{add_products, from_rest, of_base};
 use crate::kinematics::joint_transforms;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, Declaration, Kernel, Memory, Quantity, THETA, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
+use crate::workspace::Workspace;
 
 /// The gradient of xᵀM(θ)θ̈ for a constant x, `[xᵀ∂(Mθ̈)/∂θ, Mx]`, each n long; along velocities.
 /// `unused` is n numbers of memory.

@@ -5,12 +5,14 @@ use super::joint_friction::joint_friction;
 use super::mass_matrix::mass_matrix;
 use super::spring_forces::add_spring_forces;
 use crate::linalg::ldlt;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{
     ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
+use crate::workspace::Workspace;
 
+pass! {
 /// The joint accelerations θ̈ by solving M(θ)θ̈ = τ − h(θ, θ̇) − f(θ, θ̇), with h by one call of inverse dynamics. `M`
 /// is memory for n × n numbers; afterwards it holds the factors. Used where
 /// [`Model::solves_by_mass_matrix`].
@@ -19,8 +21,6 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or `M` not n².
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[allow(clippy::too_many_arguments)] // forward_dynamics' seven, and the memory for M
 pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -41,6 +41,7 @@ pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
     mass_matrix(model, theta, workspace, M);
     ldlt::factor(pattern, M, &mut workspace.pivots);
     ldlt::solve(pattern, M, ddtheta);
+}
 }
 
 /// See [`forward_dynamics_by_mass_matrix`].

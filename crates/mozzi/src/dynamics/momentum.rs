@@ -5,10 +5,11 @@ use super::inverse_dynamics::newton_euler;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{SpatialInertia, Twist, Wrench};
+use crate::workspace::{Composite, Recursion, Workspace};
 
 /// The spatial inertia of the moving links and a floating base together, about the origin of {s} in its coordinates:
 /// its `mass`, and its `mc`, the mass times the centre of mass.
@@ -23,6 +24,7 @@ pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
     composite_inertia(model, theta, workspace).transformed(base_pose(model, theta))
 }
 
+pass! {
 /// The momentum of the moving links and a floating base, (angular, linear), about the origin of {s} in its coordinates,
 /// {s} at rest:
 ///
@@ -35,15 +37,13 @@ pub fn total_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
 ///
 /// # Panics
 /// When θ is not nq long, or θ̇ not n.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub fn momentum<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], workspace: &mut Workspace<S>,
 ) -> Wrench<S> {
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
     link_twists(model, theta, dtheta, Twist::zero(), workspace);
-    let Workspace { T, V, F: P, .. } = workspace;
+    let Workspace { recursion: Recursion { T, V, F: P, .. }, .. } = workspace;
     P[0] = base_inertia(model) * V[0];
     for (i, link) in model.outward::<S>() {
         P[i] = link.G() * V[i];
@@ -53,6 +53,7 @@ pub fn momentum<S: Scalar + From<C>, C: Scalar>(
         P[link.parent] += P_i;
     }
     seen_from_space(model, theta, P[0])
+}
 }
 
 /// The n columns of the matrix A with [`momentum`] h = Aθ̇. About the centre of mass it is the centroidal momentum
@@ -73,12 +74,11 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
     columns(model, base_pose(model, theta).inverse(), workspace, A);
 }
 
+pass! {
 /// The columns of the momentum matrix in a frame {s}, seen from the base; the workspace holds the composite inertias.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE3<S>, workspace: &mut Workspace<S>, A: &mut [Wrench<S>]) {
     assert!(A.len() == model.n(), "A has {} columns, expected n = {}", A.len(), model.n());
-    let Workspace { T, G_c, .. } = workspace;
+    let Workspace { recursion: Recursion { T, .. }, composite: Composite { G: G_c, .. }, .. } = workspace;
     A.fill(Wrench::zero());
     if model.is_floating() {
         for (column, axis) in A.iter_mut().zip(Twist::axes()) {
@@ -90,6 +90,7 @@ pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE
         T[i] = T[i] * T[link.parent];                                                     // T_is
         A[link.j] += T[i].Ad().transpose() * (G_c[i] * link.A());
     }
+}
 }
 
 /// ḣ of the [`momentum`] h along a motion: Aθ̈ + Ȧθ̇, about the origin of {s}. It equals the sum of all external
@@ -117,16 +118,15 @@ pub(super) fn rate_in_base<S: Scalar + From<C>, C: Scalar>(
     let mut tau = core::mem::take(&mut workspace.vector); // its values do not matter
     newton_euler(model, theta, dtheta, ddtheta, &Environment::with_gravity(Vec3::zero()), workspace, &mut tau);
     workspace.vector = tau;
-    workspace.F[0]
+    workspace.recursion.F[0]
 }
 
+pass! {
 /// 𝒢ᶜ of every slot. Slot 0 is the base: it holds all moving links, and the base's own inertia only if it is floating.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub(super) fn composite_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) -> SpatialInertia<S> {
     model.assert_lengths(theta.len(), []);
     joint_transforms(model, theta, workspace);
-    let Workspace { T, G_c, .. } = workspace;
+    let Workspace { recursion: Recursion { T, .. }, composite: Composite { G: G_c, .. }, .. } = workspace;
     G_c[0] = base_inertia(model);
     for (i, link) in model.outward::<S>() {
         G_c[i] = link.G();
@@ -136,6 +136,7 @@ pub(super) fn composite_inertia<S: Scalar + From<C>, C: Scalar>(model: &Model<C>
         G_c[link.parent] += G;
     }
     G_c[0]
+}
 }
 
 /// 𝒢 of a floating base, 0 for a fixed one.

@@ -8,13 +8,14 @@ use super::derivatives::outward_pass;
 use super::vjp::{add_products, from_rest, in_base};
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::quantity::{
     ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
     sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
+use crate::workspace::Workspace;
 
 /// The gradient of wᵀh, h the [`momentum`](super::momentum()) about a point p of {s}, for a constant w: `[wᵀ∂h/∂θ,
 /// wᵀ∂h/∂θ̇]`, each n long; along velocities. `unused` is n numbers of memory.

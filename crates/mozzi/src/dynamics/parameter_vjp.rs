@@ -14,20 +14,21 @@
 //! For a placement the joint's parent carries it. To move the axis alone, the placement moves by ξ and the link, which
 //! then carries, by −ξ.
 
-use super::composite::BaseRates;
+use super::base_rates::BaseRates;
 use super::derivatives::outward_pass;
 use super::forward_dynamics_vjp::solved;
 use super::regressor::joint_entries;
 use super::vjp::of_base;
 use crate::kinematics::{base_pose, joint_transforms};
 use crate::linalg::Vec3;
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::quantity::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Memory, Output, Quantity, TAU, THETA, Uses,
     output, sized,
 };
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{SpatialInertia, Twist, Wrench};
+use crate::workspace::{Composite, Recursion, Workspace};
 
 /// The gradient of xᵀτ by the robot, for a constant x: `[by π, by placements, by axes, by gravity]`.
 ///
@@ -94,16 +95,16 @@ fn of_all_beyond<S: Scalar>([V, dV, X]: [Twist<S>; 3], Q: Wrench<S>, R: Vec3<S>,
     BaseRates { X: dV, Y: Some(V), sigma: S::zero() }.dot(Q, R) + X.ad().transpose() * F
 }
 
+pass! {
 /// The workspace holds T_{i,i−1}(θ).
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip] // one equation a line
 fn from_transforms<S: Scalar + From<C>, C: Scalar>(
-    model: &Model<C>, [theta, dtheta, ddtheta, x]: [&[S]; 4],
-    environment: &Environment<S>, workspace: &mut Workspace<S>, [by_pi, by_placements, by_axes, by_gravity]: [&mut [S]; 4],
+    model: &Model<C>, inputs: [&[S]; 4],
+    environment: &Environment<S>, workspace: &mut Workspace<S>, products: [&mut [S]; 4],
 ) {
+    let ([theta, dtheta, ddtheta, x], [by_pi, by_placements, by_axes, by_gravity]) = (inputs, products);
     model.assert_lengths(theta.len(), [dtheta.len(), ddtheta.len(), x.len()]);
     outward_pass(model, theta, dtheta, ddtheta, environment, Some((of_base(model, x), x)), workspace);
-    let Workspace { T, V, dV, X, F, U: Q, B, .. } = workspace;
+    let Workspace { recursion: Recursion { T, V, dV, X, F, .. }, composite: Composite { Q, B, .. }, .. } = workspace;
 
     by_pi.fill(S::zero());
     for (body, slot) in model.bodies().enumerate() {
@@ -148,6 +149,7 @@ fn from_transforms<S: Scalar + From<C>, C: Scalar>(
         by_placements[..6].copy_from_slice(&moved.to_array());
     }
     by_gravity.copy_from_slice(&(-(T_sb.R * Q[0].f)).0);
+}
 }
 
 const OUTPUTS: &[Output] = &[

@@ -6,11 +6,13 @@ use super::inverse_dynamics::newton_euler;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Spring, Workspace};
+use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Spring};
 use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, Uses, output};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{SpatialInertia, Twist};
+use crate::workspace::{Recursion, Workspace};
 
+pass! {
 /// The regressor Y(θ, θ̇, θ̈), n × p with p = [`parameter_count`](Model::parameter_count), row-major into `Y`:
 ///
 /// > Y π = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇)
@@ -32,8 +34,6 @@ use crate::spatial::{SpatialInertia, Twist};
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ or θ̈ not n, or `Y` not n p.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub fn regressor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, Y: &mut [S],
@@ -44,7 +44,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
     let mut tau = core::mem::take(&mut workspace.vector);
     newton_euler(model, theta, dtheta, ddtheta, environment, workspace, &mut tau);
     workspace.vector = tau;
-    let Workspace { T, V, dV, .. } = workspace;
+    let Workspace { recursion: Recursion { T, V, dV, .. }, .. } = workspace;
 
     Y.fill(S::zero());
     for (body, slot) in model.bodies().enumerate() {
@@ -66,6 +66,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
         }
     }
     joint_entries(model, theta, dtheta, ddtheta, |row, column, entry| Y[row * p + column] += entry);
+}
 }
 
 /// The entries of Y that belong to joints and rotors: calls `add(row, column, entry)` for each.
@@ -108,6 +109,7 @@ pub(super) fn joint_entries<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
+pass! {
 /// The energies' regressors, p numbers each: 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, as defined in
 /// [`kinetic_energy`](super::kinetic_energy) and [`potential_energy`](super::potential_energy), with π =
 /// [`parameters`](Model::parameters); `V_s` is the twist of {s} and 𝒫₀ = Σ ½k(θ₀ − offset)² the springs' energy
@@ -121,9 +123,6 @@ pub(super) fn joint_entries<S: Scalar + From<C>, C: Scalar>(
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, or `kinetic` or `potential` not p.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
-#[allow(clippy::too_many_arguments)] // the energies' five, memory and two answers
 pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, gravity: Vec3<S>,
     workspace: &mut Workspace<S>, kinetic: &mut [S], potential: &mut [S],
@@ -133,7 +132,7 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
     model.assert_lengths(theta.len(), [dtheta.len()]);
     joint_transforms(model, theta, workspace);
     link_twists(model, theta, dtheta, V_s, workspace);
-    let (Workspace { T, V, .. }, half) = (workspace, S::from_f64(0.5));
+    let (Workspace { recursion: Recursion { T, V, .. }, .. }, half) = (workspace, S::from_f64(0.5));
 
     kinetic.fill(S::zero());
     potential.fill(S::zero());
@@ -167,6 +166,7 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
             potential[4] = -theta[place.q];
         }
     }
+}
 }
 
 /// See [`regressor`].

@@ -4,10 +4,12 @@ use super::bias_forces::bias_forces;
 use super::mass_matrix::mass_matrix;
 use crate::kinematics::{body_jacobian, body_jacobian_rate, space_jacobian, space_jacobian_rate, twist_of};
 use crate::linalg::ldlt;
-use crate::model::{Environment, Model, Task, TaskFrame, TaskMemory, Workspace};
+use crate::model::{Environment, Model, Task, TaskFrame, TaskMemory};
 use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Of, Quantity, THETA, Uses, output, symmetric};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
+use crate::workspace::Workspace;
 
+pass! {
 /// Λ = (J M⁻¹Jᵀ)⁻¹, k × k, and η = Λ(J M⁻¹h − J̇θ̇), k, of the k rows of a task: 𝓕 = Λ𝒱̇ + η. h as
 /// [`bias_forces`] in this environment, without friction and springs.
 ///
@@ -15,8 +17,6 @@ use crate::scalar::Scalar;
 ///
 /// # Panics
 /// When θ is not nq long, θ̇ not n, Λ not k², η not k, or a row above 5.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[allow(clippy::too_many_arguments)] // a state, a task, memory, and two results
 pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -67,6 +67,7 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     ldlt::factor(dense, Lambda, pivots);
     ldlt::solve(dense, Lambda, eta);
     ldlt::invert(dense, Lambda, &mut row[..k]);
+}
 }
 
 /// aᵀb.

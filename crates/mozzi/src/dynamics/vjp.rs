@@ -20,12 +20,14 @@
 //! **Velocities are accelerations at rest.** At θ̇ = 0, 𝒱̇ is linear in θ̈ as 𝒱 is in θ̇. So what is linear in
 //! velocities, a twist, a momentum, is computed [`from_rest`].
 
-use super::derivatives::{base_rates, outward_pass};
+use super::base_rates::BaseRates;
+use super::derivatives::outward_pass;
 use crate::kinematics::base_pose;
 use crate::linalg::Vec3;
-use crate::model::{Environment, Model, Workspace};
-use crate::scalar::{Scalar, apart};
+use crate::model::{Environment, Model};
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::{Composite, Recursion, Workspace};
 
 /// An environment without gravity and wrenches, in which the acceleration of {s} is `V_s`: the motion at θ̇ = 0 with θ̇
 /// in place of θ̈ has 𝒱 in place of 𝒱̇ and the momentum 𝒢𝒱 in place of 𝓕.
@@ -49,7 +51,7 @@ pub(super) fn of_base<S: Scalar, C: Scalar>(model: &Model<C>, x: &[S]) -> Twist<
     }
 }
 
-apart! {
+pass! {
 /// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. The workspace holds what the outward pass along X leaves:
 /// T_{i,i−1}, the rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's coordinates.
 pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
@@ -68,11 +70,11 @@ pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
     if !model.is_floating() {
         return;
     }
-    let [by_theta, by_rates] = base_rates(model, theta, environment, workspace);
-    let (Q, R) = (workspace.U[0], workspace.B[0].f); // 𝓠ᶜ and 𝓡ᶜ of all
+    let [by_theta, by_rates] = BaseRates::of_derivatives(model, theta, environment, workspace);
+    let (Q, R) = (workspace.composite.Q[0], workspace.composite.B[0].f); // 𝓠ᶜ and 𝓡ᶜ of all
     let mut of_theta = by_theta.dot(Q, R);
     if let Some(X_s) = X_s {
-        of_theta += X_s.ad().transpose() * workspace.F[0];
+        of_theta += X_s.ad().transpose() * workspace.recursion.F[0];
     }
     let entries = [of_theta, by_rates.dot(Q, R), Q];
     for (sum, entries) in [d_theta, d_dtheta, d_ddtheta].into_iter().zip(entries) {
@@ -89,8 +91,8 @@ fn inward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, workspace: &mut Workspace<S>, [d_theta, d_dtheta, d_ddtheta]: [&mut [S]; 3],
 ) {
     let slots = model.links.len() + 1;
-    let Workspace { T, X, F, U, carrier, by_theta, by_rates, B, .. } = workspace;
-    let (T, X, F, Q) = (&T[..slots], &X[..slots], &mut F[..slots], &mut U[..slots]);
+    let Workspace { recursion: Recursion { T, X, F, carrier, .. }, composite: Composite { Q, by_theta, by_rates, B, .. }, .. } = workspace;
+    let (T, X, F, Q) = (&T[..slots], &X[..slots], &mut F[..slots], &mut Q[..slots]);
     let (by_theta, by_rates, B) = (&by_theta[..slots], &by_rates[..slots], &mut B[..slots]);
     for (i, link) in model.inward::<S>() {
         let link = link.among::<ONE_AXIS>();
@@ -105,7 +107,7 @@ fn inward<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-apart! {
+pass! {
 /// Adds the products of a number with the derivative Q_bᵀ∂𝒱̇_b + R_bᵀ∂ω_b at the links of a motion, which `sources`
 /// sets from the outward pass.
 pub(super) fn add_products_of<S: Scalar + From<C>, C: Scalar>(
@@ -119,15 +121,15 @@ pub(super) fn add_products_of<S: Scalar + From<C>, C: Scalar>(
     products: [&mut [S]; 3],
 ) {
     outward_pass(model, theta, dtheta, ddtheta, environment, None, workspace);
-    for X in workspace.X.iter_mut().chain(workspace.carrier.iter_mut().flatten()) {
+    for X in workspace.recursion.X.iter_mut().chain(workspace.recursion.carrier.iter_mut().flatten()) {
         *X = Twist::zero();
     }
-    workspace.U.fill(Wrench::zero());
-    for B in &mut workspace.B {
+    workspace.composite.Q.fill(Wrench::zero());
+    for B in &mut workspace.composite.B {
         B.f = Vec3::zero();
     }
     sources(workspace);
-    workspace.F.fill(Wrench::zero());
+    workspace.recursion.F.fill(Wrench::zero());
     add_products(model, theta, None, environment, workspace, products);
 }
 }

@@ -2,9 +2,10 @@
 
 use super::base_pose;
 use crate::lie::SE3;
-use crate::model::{FrameId, Model, Workspace};
+use crate::model::{FrameId, Model};
 use crate::quantity::{Call, Declaration, Dim, Kernel, Of, Quantity, THETA, output, sized};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
+use crate::workspace::Workspace;
 
 /// The configuration `T_sb` of a frame {b} relative to {s} at the positions θ.
 ///
@@ -24,18 +25,17 @@ pub fn forward_kinematics<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
     base_pose(model, theta) * T
 }
 
+pass! {
 /// The configurations of all frames relative to {s}, in the order of [`Model::frames`].
 ///
 /// Cost O(n + frames), no allocation.
 ///
 /// # Panics
 /// If the length of θ is not nq, or `poses` does not have one entry per frame.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>, poses: &mut [SE3<S>]) {
     model.assert_lengths(theta.len(), []);
     assert!(poses.len() == model.frames().len(), "poses has {} entries, expected one for each of {} frames", poses.len(), model.frames().len());
-    let T = &mut workspace.T;
+    let T = &mut workspace.recursion.T;
     T[0] = base_pose(model, theta);
     for (i, link) in model.outward::<S>() {
         T[i] = T[link.parent] * link.transform(theta).inverse();          // T_{s,i} = T_{s,i−1} T_{i−1,i}
@@ -44,6 +44,7 @@ pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
         let frame = model.frame_at::<S>(id);
         *pose = T[frame.slot] * frame.T;
     }
+}
 }
 
 /// See [`forward_kinematics`].

@@ -4,7 +4,7 @@ use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model};
 use crate::quantity::{Call, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
-use crate::scalar::{Scalar, apart};
+use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
 use alloc::vec::Vec;
 use core::ops::Mul;
@@ -51,7 +51,7 @@ pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S
     V
 }
 
-apart! {
+pass! {
 /// The body Jacobian `J_b`(θ) of a frame {b}: 𝒱_b = `J_b` θ̇ in {b} coordinates (Modern Robotics 5.18). Fills the n
 /// columns of `J`; zero for joints that do not move the frame. A mimic joint adds ratio × its own column to its source
 /// joint's.
@@ -70,7 +70,7 @@ pub fn body_jacobian<S: Scalar + From<C>, C: Scalar>(
 }
 }
 
-apart! {
+pass! {
 /// The space Jacobian `J_s`(θ) of a frame {b}: 𝒱_s = `J_s` θ̇ in {s} coordinates (Modern Robotics 5.11), by
 /// `J_s` = `[Ad_T_sb]` `J_b`. Fills the n columns of `J`.
 ///
@@ -91,9 +91,8 @@ pub fn space_jacobian<S: Scalar + From<C>, C: Scalar>(
 }
 }
 
+pass! {
 /// Fills the body Jacobian and returns `T_sb`.
-#[cfg_attr(not(debug_assertions), inline(always))]
-#[rustfmt::skip]
 pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], frame: FrameId, J: &mut [Twist<S>]) -> SE3<S> {
     model.assert_lengths(theta.len(), [J.len()]);
     J.fill(Twist::zero());
@@ -109,6 +108,7 @@ pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, the
         }
     }
     base_pose(model, theta) * T.inverse()
+}
 }
 
 /// See [`space_jacobian`].

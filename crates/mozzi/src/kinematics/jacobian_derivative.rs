@@ -2,10 +2,11 @@
 
 use super::base_pose;
 use crate::lie::SE3;
-use crate::model::{FrameId, Model, Workspace};
+use crate::model::{FrameId, Model};
 use crate::quantity::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, THETA, by_rows, output, sized};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
+use crate::workspace::Workspace;
 
 /// ∂J_i/∂θ_j of the body Jacobian, at `H[i * n + j]`: `[ad_{J_i}]` J_j if joint j is between joint i and the frame,
 /// else 0. For a floating base the six derivatives are along its twist in its own coordinates.
@@ -64,9 +65,9 @@ pub fn space_jacobian_derivative<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
+pass! {
 /// Calls `add` with `[ad_{J_inner}]` J_outer, in {b} coordinates, for every pair of axes on the frame's path, and with
 /// whether both are axes of one ball or free joint, which all move with the link that they carry; returns `T_sb`.
-#[cfg_attr(not(debug_assertions), inline(always))]
 fn brackets<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],
@@ -80,7 +81,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
     assert!(H.len() == n * n, "H has {} entries, expected n² = {}", H.len(), n * n);
     H.fill(Twist::zero());
     let frame = model.frame_at::<S>(frame);
-    let J = &mut workspace.V;
+    let J = &mut workspace.recursion.V;
     let mut T = frame.T.inverse(); // T_{b,i}
     for (i, inner) in model.to_base::<S>(frame.slot) {
         J[i] = T.Ad() * inner.A().twist();
@@ -98,6 +99,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
         }
     }
     base_pose(model, theta) * T.inverse()
+}
 }
 
 /// See [`space_jacobian_derivative`].

@@ -1,12 +1,13 @@
 //! Rates of the Jacobians along a motion.
 
 use super::{base_pose, base_twist};
-use crate::model::{FrameId, Model, Workspace};
+use crate::model::{FrameId, Model};
 use crate::quantity::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
-use crate::scalar::{Scalar, apart};
+use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
+use crate::workspace::Workspace;
 
-apart! {
+pass! {
 /// d`J_b`/dt of a frame along θ̇: 𝒱̇_b = `J_b` θ̈ + J̇_b θ̇ in {b} coordinates. `dJ` receives its n columns, J̇_i =
 /// `[ad_{J_i}]` Σ_k J_k θ̇_k over the joints k between joint i and the frame; a ball's axes move with the link beyond
 /// all three.
@@ -38,7 +39,7 @@ pub fn body_jacobian_rate<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, thet
 }
 }
 
-apart! {
+pass! {
 /// d`J_s`/dt of a frame along θ̇: 𝒱̇_s = `J_s` θ̈ + J̇_s θ̇ in {s} coordinates. `dJ` receives its n columns, J̇_i =
 /// `[ad_𝒱]` J_i, with 𝒱 the twist of the link that carries joint i. A ball's axes move with the link beyond all three,
 /// so their 𝒱 is the twist of that link. (Computed from J̇_b and the frame's own twist, the contributions of the joints

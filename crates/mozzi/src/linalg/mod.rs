@@ -5,11 +5,13 @@ pub(crate) mod ldlt;
 mod mat3;
 mod pattern;
 mod skew;
+mod square;
 mod sym3;
 mod vec3;
 
 pub use mat3::Mat3;
 pub(crate) use skew::Skew;
+pub(crate) use square::Square;
 pub use sym3::Sym3;
 pub use vec3::Vec3;
 

@@ -4,8 +4,7 @@ use super::description::{self, Joint, JointKind};
 use super::places::names_of;
 use super::tie::ties;
 use super::{
-    Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Runs, Severity, Spring,
-    Structure,
+    Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Severity, Spring, Structure,
 };
 use crate::kinematics::ConfigurationSpace;
 use crate::lie::{SE3, SO3};
@@ -115,7 +114,6 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
     let joint_places = &places[usize::from(base_name.is_some())..];
     let rotors = rotors(description, &moving_joints, &links);
     let (springs, spring_energy) = springs(description, &moving_joints, &links, &places);
-    let is_deep = mean_depth_exceeds(DEEP, &links);
     let coupled_free = rotors.is_empty() && moving_joints.iter().all(|&i| description.joints[i].mimic.is_none());
     let pattern = Pattern::coupled(
         description.base.velocities(),
@@ -142,10 +140,8 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
             has_mimic_joints: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),
             siblings: siblings.unwrap_or_default(),
             free: joint_places.iter().filter(|place| place.freedom == Freedom::Free).map(|place| place.j).collect(),
-            is_deep,
-            solves_by_bodies: coupled_free && mean_depth_exceeds(VERY_DEEP, &links),
+            has_long_limbs: coupled_free && mean_depth_exceeds(LONG, &links),
             forks: forks(&links),
-            runs: if is_deep { Runs::new(&links) } else { Runs::default() },
             of_one_axis: joint_places.iter().all(|place| place.freedom == Freedom::One),
             moving_links: moving_joints.iter().map(|&i| link_index[description.joints[i].child.as_str()]).collect(),
             base,
@@ -228,10 +224,9 @@ fn siblings<C>(links: &[Link<C>], n: usize) -> Option<Vec<usize>> {
     Some(siblings)
 }
 
-/// Mean numbers of links between a link and the base above which the base's axes, and articulated bodies, are faster;
-/// measured, see `docs/performance-log.md`.
-const DEEP: usize = 8;
-const VERY_DEEP: usize = 10;
+/// The mean number of links between a link and the base above which articulated bodies give ∂θ̈ sooner; measured, see
+/// `docs/performance-log.md`.
+const LONG: usize = 10;
 const TURN: [bool; 2] = [true, false];
 const SLIDE: [bool; 2] = [false, true];
 

@@ -1,11 +1,9 @@
 //! The robot: the content of its file ([`Description`]), and the constants of the kernels ([`Model`]).
 
-mod axis_pairs;
 mod base;
 mod bounds;
 mod build;
 mod check;
-mod columns;
 mod constraint;
 mod couples;
 pub mod description;
@@ -20,7 +18,6 @@ mod places;
 mod provenance;
 mod reduced;
 mod rotor;
-mod runs;
 mod screws;
 mod spring;
 mod states;
@@ -28,7 +25,6 @@ mod task;
 mod tie;
 mod traverse;
 mod variation;
-mod workspace;
 
 use crate::kinematics::ConfigurationSpace;
 use crate::linalg::{Vec3, ldlt::Pattern};
@@ -38,11 +34,9 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-pub(crate) use axis_pairs::{ByRates, ByTheta, Turned};
 pub use base::Base;
 pub use bounds::Bounds;
 pub use check::{Element, Problem, Severity};
-pub(crate) use columns::{Columns, Passed, Source};
 pub use description::Description;
 pub use environment::Environment;
 pub use error::Error;
@@ -53,14 +47,12 @@ pub use pivots::{Pivots, clearance, least_is_clear};
 pub use places::{Freedom, Place};
 pub use provenance::FoldedBody;
 pub(crate) use rotor::Rotor;
-pub(crate) use runs::{Row, Run, Runs, TOGETHER};
 pub use screws::{HomeFrames, ScrewLists, Screws};
 pub(crate) use spring::Spring;
 pub use states::State;
 pub use task::{Task, TaskFrame, TaskMemory};
 pub(crate) use tie::{End, Own, Tie, TieKind, Ties, Way};
 pub use variation::Variation;
-pub use workspace::Workspace;
 
 /// A robot's constants, in the screw normal form: every moving link has a frame whose z-axis is its joint's screw axis;
 /// fixed joints are folded away, and every frame of the file remains as a [`Frame`].
@@ -123,14 +115,10 @@ pub(crate) struct Structure {
     pub siblings: Vec<usize>,
     /// The first index in θ̇ of each free joint.
     pub free: Vec<usize>,
-    /// Are there on average many links between a link and the base? The composite-body pass then uses the base's axes.
-    pub is_deep: bool,
-    /// Are the joints uncoupled, and so deep that ∂θ̈ uses articulated bodies?
-    pub solves_by_bodies: bool,
+    /// Are the joints uncoupled, and the limbs so long that articulated bodies give ∂θ̈ sooner?
+    pub has_long_limbs: bool,
     /// Does another limb branch off from the link of a slot?
     pub forks: Vec<bool>,
-    /// For a deep robot, the links that are then processed together.
-    pub runs: Runs,
     /// No joint is a ball or free.
     pub of_one_axis: bool,
 }

@@ -38,10 +38,50 @@ impl<C: Scalar> Model<C> {
         Traverse { links: &self.links, slot: self.links.len(), types: PhantomData }
     }
 
+    /// The steps from a slot's link to the base: each link with its parent, and with the parent's joint; at a floating
+    /// base the last parent is slot 0, whose joint is `None`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn steps_to_base<S>(&self, slot: usize) -> StepsToBase<'_, C, S> {
+        let parent = self.links[slot - 1].parent;
+        StepsToBase { links: &self.links, slot, parent, ends_at_base: self.is_floating(), number: PhantomData }
+    }
+
     /// A slot's link, its parent, and so on down to the base.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn to_base<S>(&self, slot: usize) -> Traverse<'_, C, S, ToBase> {
         Traverse { links: &self.links, slot, types: PhantomData }
+    }
+}
+
+/// See [`Model::steps_to_base`].
+pub(crate) struct StepsToBase<'m, C, S> {
+    links: &'m [Link<C>],
+    slot: usize,
+    parent: usize,
+    /// A step to a floating base is left.
+    ends_at_base: bool,
+    number: PhantomData<S>,
+}
+
+/// A link, its parent's slot, and the joint that moves the parent.
+pub(crate) type Step<'m, C, S> = (usize, usize, Option<Lifted<'m, C, S>>);
+
+impl<'m, C: Scalar, S> Iterator for StepsToBase<'m, C, S> {
+    type Item = Step<'m, C, S>;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn next(&mut self) -> Option<Self::Item> {
+        let (link, parent) = (self.slot, self.parent);
+        match self.links.get(parent.wrapping_sub(1)) {
+            Some(joint) => {
+                (self.slot, self.parent) = (parent, joint.parent);
+                Some((link, parent, Some(Lifted::new(joint))))
+            }
+            None if self.ends_at_base => {
+                self.ends_at_base = false;
+                Some((link, 0, None))
+            }
+            None => None,
+        }
     }
 }
 

@@ -3,9 +3,10 @@
 use crate::constraints::ConstraintMemory;
 use crate::lie::SE3;
 use crate::linalg::{Vec3, ldlt::Pattern};
-use crate::model::{Model, TaskMemory, Workspace};
+use crate::model::{Model, TaskMemory};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::Workspace;
 use alloc::vec;
 use alloc::vec::Vec;
 

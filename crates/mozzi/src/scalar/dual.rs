@@ -132,9 +132,9 @@ impl<S: PartialOrd> PartialOrd for Dual<S> {
 }
 
 impl<S: Scalar> Scalar for Dual<S> {
-    type Four = [Self; 4];
+    type Lanes<const L: usize> = [Self; L];
     const DIGITS: u32 = S::DIGITS;
-    const IN_PLACE: bool = S::IN_PLACE;
+    const IS_FUSED: bool = S::IS_FUSED;
     fn from_f64(x: f64) -> Self {
         Dual::constant(S::from_f64(x))
     }

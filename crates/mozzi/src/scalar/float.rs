@@ -34,7 +34,7 @@ mod elementary {
 macro_rules! float {
     ($($f:ident),*) => { $(
         impl Scalar for $f {
-            type Four = [Self; 4];
+            type Lanes<const L: usize> = [Self; L];
             const DIGITS: u32 = $f::MANTISSA_DIGITS;
             #[inline(always)]
             fn from_f64(x: f64) -> Self { x as $f }

@@ -1,6 +1,6 @@
 //! `f64` whose `mul_add` is one machine instruction.
 
-use super::four::FourFused;
+use super::lanes::FusedLanes;
 use super::{Scalar, assign_ops, float};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -56,8 +56,8 @@ impl From<f64> for Fused {
 }
 
 impl Scalar for Fused {
-    const IN_PLACE: bool = true;
-    type Four = FourFused;
+    const IS_FUSED: bool = true;
+    type Lanes<const L: usize> = FusedLanes<L>;
 
     #[inline(always)]
     fn from_f64(x: f64) -> Self {

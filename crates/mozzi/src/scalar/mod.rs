@@ -1,26 +1,28 @@
 //! The number that every kernel is generic over.
 
-mod apart;
 mod dual;
 mod float;
-mod four;
 mod fused;
+mod lanes;
+mod pass;
 #[cfg(test)]
 pub(crate) mod recorded;
 mod sin_cos;
 
-pub(crate) use apart::apart;
 pub use dual::Dual;
-pub use four::{Four, FourAtOnce};
 pub use fused::Fused;
+pub use lanes::Lanes;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+pub(crate) use pass::assert_fma;
+pub(crate) use pass::pass;
 pub use sin_cos::{Bits, Float, sin_cos};
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// The number type of the kernels: `f64`, `f32`, [`Dual`] (derivatives), registers of several states, or a recording.
+/// The number type of the kernels: `f64`, `f32`, [`Dual`] (derivatives), or a recording.
 ///
-/// There is deliberately no `PartialOrd`: a register of eight states, or a recording, cannot branch on a value.
+/// There is deliberately no `PartialOrd`: a recording cannot branch on a value.
 /// A kernel with states of type `S` takes the model's constants of type `C` by `S: From<C>`.
 pub trait Scalar:
     Copy
@@ -36,14 +38,14 @@ pub trait Scalar:
     /// Upper bound on its binary digits; series are summed to this precision.
     const DIGITS: u32 = 53;
 
-    /// Is it one number, and not a register of them or a recording?
+    /// True for a number, false for a recording.
     const IS_ONE: bool = true;
 
-    /// Is code on it inlined into its entry, which alone is compiled for the instructions that its operations are?
-    const IN_PLACE: bool = false;
+    /// Whether passes on it are compiled for fused multiply-add: see `scalar/pass.rs`.
+    const IS_FUSED: bool = false;
 
-    /// Four of these numbers; `[Self; 4]` unless a register holds them.
-    type Four: Four<Self>;
+    /// L of these numbers, at most four; `[Self; L]` unless a register holds them.
+    type Lanes<const L: usize>: Lanes<Self, L>;
 
     /// The number nearest to `x`.
     fn from_f64(x: f64) -> Self;

@@ -92,7 +92,7 @@ impl From<f64> for Recorded {
     }
 }
 impl Scalar for Recorded {
-    type Four = [Self; 4];
+    type Lanes<const L: usize> = [Self; L];
     fn from_f64(x: f64) -> Self {
         Recorded::Constant(x)
     }

@@ -2,8 +2,9 @@
 
 use crate::constraints::{ConstraintMemory, change, constraint_jacobian, delassus};
 use crate::kinematics::integrate;
-use crate::model::{Error, Model, Workspace};
+use crate::model::{Error, Model};
 use crate::scalar::{Float, Real, Scalar};
+use crate::workspace::Workspace;
 use alloc::vec;
 use alloc::vec::Vec;
 

@@ -2,8 +2,9 @@
 
 use crate::dynamics::mass_matrix;
 use crate::linalg::ldlt;
-use crate::model::{Error, Model, Workspace};
+use crate::model::{Error, Model};
 use crate::scalar::Scalar;
+use crate::workspace::Workspace;
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;

@@ -2,8 +2,9 @@
 
 use crate::dynamics::{add_spring_forces, gravity_forces};
 use crate::linalg::Vec3;
-use crate::model::{Environment, Error, FrameId, Freedom, Model, Workspace};
+use crate::model::{Environment, Error, FrameId, Freedom, Model};
 use crate::spatial::Wrench;
+use crate::workspace::Workspace;
 use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;

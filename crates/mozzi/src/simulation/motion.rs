@@ -220,9 +220,10 @@ impl<S: Real, const K: usize> Motion<S, K> {
 mod tests {
     use super::*;
     use crate::dynamics::forward_dynamics;
-    use crate::model::{Model, Workspace};
+    use crate::model::Model;
     use crate::simulation::robots::{difference, smooth_tree};
     use crate::simulation::{Method, Options, torque};
+    use crate::workspace::Workspace;
     use crate::{Dual, fast, testing};
     use core::convert::Infallible;
 

@@ -10,6 +10,7 @@ mod joint_axis;
 mod nearest_physical;
 mod screw_axis;
 pub mod solids;
+mod wrenches;
 
 pub use crate::lie::{Twist, Wrench};
 pub use articulated_inertia::ArticulatedInertia;
@@ -18,3 +19,4 @@ pub(crate) use coriolis_factor::{CoriolisFactor, coriolis_moment};
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
 pub(crate) use joint_axis::JointAxis;
 pub use screw_axis::{NotAScrew, ScrewAxis};
+pub(crate) use wrenches::Wrenches;

@@ -4,8 +4,9 @@ use super::Rows;
 use crate::constraints::{ConstraintMemory, constraint_jacobian, delassus};
 use crate::kinematics::{joint_transforms, seed_direction};
 use crate::linalg::ldlt;
-use crate::model::{Environment, Error, Model, Workspace};
+use crate::model::{Environment, Error, Model};
 use crate::scalar::Dual;
+use crate::workspace::Workspace;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
@@ -53,7 +54,7 @@ impl Model<f64> {
         let (mut forces, mut accelerations) =
             ([of_tau.d_theta, of_tau.d_dtheta], [DMatrix::zeros(m, n), DMatrix::zeros(m, n)]);
         let mut workspace = Workspace::new(self);
-        let zero = |k: usize| Dual::constants(&vec![0.0; k]);
+        let (still, zero) = (self.map(Dual::constant), |k: usize| Dual::constants(&vec![0.0; k]));
         let (mut A, mut bias) = (zero(m * n), zero(m));
         for j in 0..n {
             let mut e = vec![0.0; n];
@@ -61,7 +62,7 @@ impl Model<f64> {
             let moving = [seed_direction(self, theta, &e), Dual::constants(theta)];
             let rates = [Dual::constants(dtheta), Dual::list(dtheta, &e)];
             for k in 0..2 {
-                constraint_jacobian(self, &moving[k], &rates[k], &mut workspace, &mut A, &mut bias, &mut []);
+                constraint_jacobian(&still, &moving[k], &rates[k], &mut workspace, &mut A, &mut bias, &mut []);
                 for r in 0..m {
                     let mut sum = bias[r].derivative;
                     for i in 0..n {

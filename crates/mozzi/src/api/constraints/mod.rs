@@ -15,8 +15,9 @@ pub use rank::ConstraintRank;
 pub use reduction::Reduction;
 
 use crate::constraints::constraint_jacobian;
-use crate::model::{Error, Model, Workspace};
+use crate::model::{Error, Model};
 use crate::scalar::Scalar;
+use crate::workspace::Workspace;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec;

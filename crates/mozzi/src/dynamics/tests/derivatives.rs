@@ -2,11 +2,12 @@
 
 use super::{close, models};
 use crate::kinematics::integrate;
-use crate::model::{Environment, FrameId, Model, Workspace};
+use crate::model::{Environment, FrameId, Model};
 use crate::quantities::{ForwardDynamicsVjp, InverseDynamicsVjp};
 use crate::testing::{
     chain, floating_mixed_tree, floating_tree, limbs, mixed_tree, moving, state, tree, twist, wrench,
 };
+use crate::workspace::Workspace;
 use crate::{Dual, Scalar, Vec3, Wrench, dynamics as kernel};
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
@@ -94,7 +95,7 @@ fn deep() -> Vec<(u64, Model)> {
 #[test]
 fn deep_robots_have_every_remainder_and_every_kind_of_branch() {
     let deep = deep();
-    assert!(deep.iter().all(|(_, model)| model.structure.solves_by_bodies));
+    assert!(deep.iter().all(|(_, model)| model.structure.has_long_limbs));
     for remainder in 0..8 {
         assert!(deep.iter().any(|(_, model)| model.links.len() % 8 == remainder), "{remainder} columns are left");
     }

@@ -2,9 +2,10 @@
 
 use super::{close, column};
 use crate::dynamics as kernel;
+use crate::model::Environment;
 use crate::model::description::Mimic;
-use crate::model::{Environment, Workspace};
 use crate::testing::{floating_tree, grippers, mixed_tree, state, tree, wrench};
+use crate::workspace::Workspace;
 use alloc::vec;
 use nalgebra::DVector;
 

@@ -8,10 +8,11 @@ mod rotors;
 mod springs;
 mod vjp;
 
-use crate::model::{Environment, Model, Workspace};
+use crate::model::{Environment, Model};
 use crate::testing::{
     chain, floating_mixed_tree, floating_tree, grippers, mixed_tree, moving, state, tree, twist, wrench,
 };
+use crate::workspace::Workspace;
 use crate::{Dual, Scalar, dynamics as kernel};
 use nalgebra::{DMatrix, DVector};
 

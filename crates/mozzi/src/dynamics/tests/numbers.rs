@@ -1,8 +1,9 @@
 //! The kernels on unusual scalars and robots: NaN, f32, recordings, NaN-filled memory, singular and extreme masses.
 
 use super::{close, column};
-use crate::model::{Environment, Workspace};
+use crate::model::Environment;
 use crate::testing::{Random, state, tree, twist, wrench};
+use crate::workspace::Workspace;
 use crate::{Scalar, dynamics as kernel};
 use nalgebra::DVector;
 

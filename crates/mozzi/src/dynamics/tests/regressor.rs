@@ -2,8 +2,9 @@
 
 use super::{close, column, models};
 use crate::dynamics as kernel;
-use crate::model::{Environment, Workspace};
+use crate::model::Environment;
 use crate::testing::{state, twist};
+use crate::workspace::Workspace;
 use nalgebra::{DMatrix, DVector};
 
 #[test]

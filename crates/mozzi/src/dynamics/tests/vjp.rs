@@ -1,8 +1,9 @@
 //! The gradients of energies, momenta, frames and by the robot, against dual numbers of the quantities themselves.
 
 use super::models;
-use crate::model::{Environment, FrameId, Model, Variation, Workspace};
+use crate::model::{Environment, FrameId, Model, Variation};
 use crate::testing::{Random, moving, state, twist, wrench};
+use crate::workspace::Workspace;
 use crate::{Dual, Twist, Vec3, Wrench, body_jacobian, dynamics as kernel, frame_acceleration};
 use alloc::format;
 use alloc::vec::Vec;

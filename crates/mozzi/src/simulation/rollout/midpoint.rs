@@ -14,12 +14,13 @@ use super::stepper::{Cotangents, Stepper};
 use super::tape::Tape;
 use crate::dynamics::{inverse_dynamics, mass_matrix, mass_matrix_rate};
 use crate::kinematics::{integrate, seed_direction};
-use crate::model::{Environment, Error, Freedom, Model, Variation, Workspace};
+use crate::model::{Environment, Error, Freedom, Model, Variation};
 use crate::scalar::{Dual, Real, Scalar};
 use crate::simulation::driven::Driven;
 use crate::simulation::midpoint::{Midpoint, on_the_group, padded};
 use crate::simulation::state::State;
 use crate::simulation::{Equation, Options};
+use crate::workspace::Workspace;
 use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -105,7 +106,7 @@ impl Stepper for MidpointSteps<'_> {
         let (model, equation, n, p) = (driven.model, &driven.equation, tau.len(), to.parameters.len());
         let options = Options { gravity: Some(equation.gravity), ..equation.options };
         let ([theta, dtheta, v], [_, end, _]) = (tape.stage(at), ends.stage(at));
-        let zero = vec![0.0; n];
+        let (zero, still) = (vec![0.0; n], model.map(Dual::constant));
         let mut along_unit = |which: usize, j: usize| {
             let mut e = zero.clone();
             e[j] = 1.0;
@@ -113,7 +114,7 @@ impl Stepper for MidpointSteps<'_> {
             let step =
                 [Dual::list(dtheta, by(1)), Dual::list(v, by(2)), Dual::list(end, by(3)), Dual::list(tau, by(4))];
             gap(
-                model,
+                &still,
                 &seed_direction(model, theta, by(0)),
                 step.each_ref().map(Vec::as_slice),
                 (*h, &options),
@@ -163,16 +164,13 @@ fn varied(model: &Model) -> Result<Vec<Model<Dual>>, Error> {
 }
 
 /// The derivative of G.
-fn gap<C: Scalar>(
-    model: &Model<C>,
+fn gap(
+    model: &Model<Dual>,
     theta: &[Dual],
     step: [&[Dual]; 4],
     way: (f64, &Options),
     workspace: &mut Workspace<Dual>,
-) -> DVector<f64>
-where
-    Dual: From<C>,
-{
+) -> DVector<f64> {
     let G = equations(model, theta, step, way, workspace);
     DVector::from_iterator(G.len(), G.iter().map(|x| x.derivative))
 }

@@ -5,8 +5,9 @@ use super::Rollout;
 use super::midpoint::equations;
 use super::tests::{Case, SMOOTH, case, dot, models};
 use crate::kinematics::{difference, integrate};
-use crate::model::{Model, Workspace};
+use crate::model::Model;
 use crate::simulation::{Method, Options};
+use crate::workspace::Workspace;
 use alloc::vec;
 use alloc::vec::Vec;
 

@@ -1,21 +1,22 @@
-//! The columns of ∂θ̈ on their way from their joint outward; see `articulated_derivatives.rs`.
+//! The columns of ∂θ̈ on their way from their joint outward; see `mod.rs`.
 
-use super::composite::BaseRates;
+use crate::dynamics::base_rates::BaseRates;
 use crate::linalg::Vec3;
-use crate::model::{Columns, Model, Passed, Source, TOGETHER as W, Turned, Workspace};
+use crate::model::Model;
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
+use crate::workspace::{Columns, LongLimbs, Passed, Source, Turned, W};
 
 /// The columns of a floating base's six axes. They start at the base with a + r = −Φ𝓑̂s.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn columns_of_base<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     rates: [BaseRates<S>; 2],
-    workspace: &mut Workspace<S>,
+    limbs: &mut LongLimbs<S>,
     matrices: &mut [&mut [S]; 3],
 ) {
-    let (n, Source { Phi, B_hat, .. }) = (model.n(), workspace.sources[0]);
-    let mut now = Columns::zero();
+    let (n, Source { Phi, B_hat, .. }) = (model.n(), limbs.sources[0]);
+    let mut now = Columns::filled_with(S::zero());
     for (e, axis) in Twist::axes().into_iter().enumerate() {
         let [(r, s), (r_rates, s_rates)] = [rates[0].of(axis), rates[1].of(axis)];
         let a = times(&Phi, (-product(B_hat, s)).to_array());
@@ -32,13 +33,13 @@ pub(super) fn columns_of_base<S: Scalar + From<C>, C: Scalar>(
         }
     }
     if model.structure.forks[0] {
-        workspace.at_forks[0] = now;
+        limbs.at_forks[0] = now;
     }
     let mut tile = [[[S::zero(); W]; W]; 3];
     let block = Block { first: 1, c: 0, width: 6, e: [[S::zero(); W]; 2] };
     for i in 1..=model.links.len() {
-        let x = now.pass(model, i, workspace);
-        block.write(model, i, &now, x, 6, workspace, matrices, &mut tile);
+        let x = now.pass(model, i, limbs);
+        block.write(model, i, &now, x, 6, limbs, matrices, &mut tile);
     }
 }
 
@@ -47,26 +48,26 @@ pub(super) fn columns_of_base<S: Scalar + From<C>, C: Scalar>(
 pub(super) fn columns_of_joints<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     first: usize,
-    workspace: &mut Workspace<S>,
+    limbs: &mut LongLimbs<S>,
     matrices: &mut [&mut [S]; 3],
 ) {
     let links = model.links.len();
     let width = W.min(links + 1 - first);
     let mut tile = [[[S::zero(); W]; W]; 3];
     let mut block = Block { first, c: model.n() - links + first - 1, width, e: [[S::zero(); W]; 2] };
-    if !workspace.at_forks.is_empty() {
+    if !limbs.at_forks.is_empty() {
         for w in 0..width {
-            start_at_forks(model, first + w, w, workspace);
+            start_at_forks(model, first + w, w, limbs);
         }
     }
-    let mut now = Columns::zero();
+    let mut now = Columns::filled_with(S::zero());
     for w in 0..width {
         let i = first + w;
         let mut x = match w {
             0 => [[S::zero(); W]; 3],
-            _ => now.pass(model, i, workspace),
+            _ => now.pass(model, i, limbs),
         };
-        let (source, s) = (&workspace.sources[i], [workspace.turned[i].by_theta.1, workspace.turned[i].by_rates.1]);
+        let (source, s) = (&limbs.sources[i], [limbs.turned[i].by_theta.1, limbs.turned[i].by_rates.1]);
         for k in 0..3 {
             for r in 0..6 {
                 now.a[k][r][w] = source.a[k][r];
@@ -76,23 +77,23 @@ pub(super) fn columns_of_joints<S: Scalar + From<C>, C: Scalar>(
             for r in 0..3 {
                 now.s[k][r][w] = s[k].0[r];
             }
-            block.e[k][w] = workspace.passed[i].minus_e[k];
+            block.e[k][w] = limbs.passed[i].minus_e[k];
         }
         x[0][w] = source.x;
-        block.write(model, i, &now, x, w + 1, workspace, matrices, &mut tile);
+        block.write(model, i, &now, x, w + 1, limbs, matrices, &mut tile);
     }
     let (mut now, block) = (now, block);
     for i in first + width..=links {
-        let x = now.pass(model, i, workspace);
-        block.write(model, i, &now, x, width, workspace, matrices, &mut tile);
+        let x = now.pass(model, i, limbs);
+        block.write(model, i, &now, x, width, limbs, matrices, &mut tile);
     }
 }
 
 /// Sets column w, of the joint of slot i, at the links between it and the base that another limb branches off from:
 /// a = −ΦP, the wrench P being what is left of Q or of the force at the joint.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn start_at_forks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, i: usize, w: usize, workspace: &mut Workspace<S>) {
-    let Workspace { turned, passed, sources, at_forks, .. } = workspace;
+fn start_at_forks<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, i: usize, w: usize, limbs: &mut LongLimbs<S>) {
+    let LongLimbs { turned, passed, sources, at_forks, .. } = limbs;
     let at = &passed[i];
     let [Q, Q_rates] = at.minus_Q;
     // −P
@@ -132,10 +133,10 @@ impl<S: Scalar> Passed<S> {
 impl<S: Scalar> Columns<S> {
     /// Moves from the parent to a link, and returns x.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn pass<C: Scalar>(&mut self, model: &Model<C>, i: usize, workspace: &Workspace<S>) -> [[S; W]; 3] {
-        let (at, parent) = (&workspace.passed[i], model.links[i - 1].parent);
+    fn pass<C: Scalar>(&mut self, model: &Model<C>, i: usize, limbs: &LongLimbs<S>) -> [[S; W]; 3] {
+        let (at, parent) = (&limbs.passed[i], model.links[i - 1].parent);
         if parent + 1 != i {
-            *self = workspace.at_forks[parent];
+            *self = limbs.at_forks[parent];
         }
         let mut x = [[S::zero(); W]; 3];
         for k in 0..3 {
@@ -184,14 +185,14 @@ impl<S: Scalar> Block<S> {
         now: &Columns<S>,
         mut x: [[S; W]; 3],
         count: usize,
-        workspace: &mut Workspace<S>,
+        limbs: &mut LongLimbs<S>,
         matrices: &mut [&mut [S]; 3],
         tile: &mut [[[S; W]; W]; 3],
     ) {
         if model.structure.forks[i] {
-            workspace.at_forks[i].copy_from(now, count);
+            limbs.at_forks[i].copy_from(now, count);
         }
-        let (n, at) = (model.n(), &workspace.passed[i]);
+        let (n, at) = (model.n(), &limbs.passed[i]);
         let (j, t) = (n - model.links.len() + i - 1, (i - self.first) % W);
         // columns of the rows: −aᵀQ_j
         tile[0][t] = x[0];

@@ -33,67 +33,96 @@
 //! Inertias are in link frames, where a slender link keeps its digits. All else is in the base's axes, about each
 //! link's own origin, so that a step to a parent or a child is a shift.
 
-use super::armature::add_velocity_product_rates;
-use super::articulated_columns::{add, columns_of_base, columns_of_joints, product, shift_rows, times};
-use super::composite::{carried_together, check_size};
-use super::derivatives::{add_damping, base_rates, outward_pass};
-use super::path::{Pairs, turn};
-use super::spring_forces::add_stiffness;
-use crate::linalg::{Mat3, Vec3, ldlt};
-use crate::model::{Environment, Freedom, Model, TOGETHER as W, Turned, Workspace};
-use crate::scalar::{Scalar, apart};
-use crate::spatial::{CoriolisFactor, Twist, Wrench};
+mod columns;
 
-apart! {
+use super::armature::add_velocity_product_rates;
+use super::base_rates::BaseRates;
+use super::derivatives::{add_damping, outward_pass};
+use super::several_axes::carried_together;
+use super::spring_forces::add_stiffness;
+use crate::lie::SO3;
+use crate::linalg::{Mat3, Square, Vec3, ldlt};
+use crate::model::{Environment, Freedom, Model};
+use crate::scalar::{Scalar, pass};
+use crate::spatial::{CoriolisFactor, Twist, Wrench};
+use crate::workspace::{Articulated, ByRates, ByTheta, Composite, LongLimbs, Recursion, Turned, W, Workspace};
+use columns::{add, columns_of_base, columns_of_joints, product, shift_rows, times};
+
+pass! {
 /// Fills the matrices, n × n by rows, with ∂θ̈/∂θ, ∂θ̈/∂θ̇ and M⁻¹. The workspace holds T and the factors
 /// of forward dynamics.
-pub(super) fn articulated_derivatives<S: Scalar + From<C>, C: Scalar>(
+pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, matrices: [&mut [S]; 3],
 ) {
-    let [X, Y, inverse] = matrices;
+    let ([X, Y, inverse], n) = (matrices, model.n());
     for matrix in [&*X, &*Y, &*inverse] {
-        check_size(model, matrix);
+        assert!(matrix.len() == n * n, "a matrix has {} entries, expected n² = {}", matrix.len(), n * n);
     }
+    let mut limbs = workspace.long_limbs.take().unwrap_or_else(|| LongLimbs::new(model));
     outward_pass(model, theta, dtheta, ddtheta, environment, None, workspace);
-    let rates = base_rates(model, theta, environment, workspace);
+    let rates = BaseRates::of_derivatives(model, theta, environment, workspace);
 
     // the blocks of the joints' own terms, at their places in ∂τ
     for place in model.places() {
         for j in place.velocities() {
             for matrix in [&mut *X, &mut *Y] {
-                matrix[j * model.n()..][place.velocities()].fill(S::zero());
+                matrix[j * n..][place.velocities()].fill(S::zero());
             }
         }
     }
     add_stiffness(model, theta, X);
     add_damping(model, Y);
     add_velocity_product_rates(model, dtheta, Y);
-    inward(model, workspace, X);
-    take_blocks(model, workspace, [X, Y]);
-    outward(model, workspace);
+    inward(model, workspace, &mut limbs, X);
+    take_blocks(model, &mut limbs, [X, Y]);
+    outward(model, workspace, &mut limbs);
 
     let mut matrices = [inverse, X, Y];
     if model.is_floating() {
-        columns_of_base(model, rates, workspace, &mut matrices);
+        columns_of_base(model, rates, &mut limbs, &mut matrices);
     }
     for first in (1..=model.links.len()).step_by(W) {
-        columns_of_joints(model, first, workspace, &mut matrices);
+        columns_of_joints(model, first, &mut limbs, &mut matrices);
     }
     let [inverse, X, Y] = matrices;
-    multiply_blocks(model, workspace, inverse, [X, Y]);
+    multiply_blocks(model, &limbs, inverse, [X, Y]);
+    workspace.long_limbs = Some(limbs);
 }
+}
+
+/// Base to tips: the links' axes and pairs in the base's axes.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn turn<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, turned: &mut [Turned<S>]) {
+    let Workspace { recursion: Recursion { T, .. }, composite: Composite { by_theta, by_rates, .. }, .. } = workspace;
+    turned[0].R = SO3::identity();
+    for (i, link) in model.outward::<S>() {
+        let R = turned[link.parent].R * T[i].R.inverse();
+        let turn = |V: Twist<S>| Twist { w: R * V.w, v: R * V.v };
+        let (ByTheta { r: by_theta, s: [x, y] }, ByRates { r: by_rates, s: z }) = (by_theta[i], by_rates[i]);
+        turned[i] = Turned {
+            R,
+            p: R * T[i].p,
+            A: turn(link.A().twist()),
+            by_theta: (turn(by_theta), R * Vec3([x, y, S::zero()])),
+            by_rates: (turn(by_rates.twist()), R * Vec3([S::zero(), S::zero(), z])),
+        };
+    }
 }
 
 /// Tips to base: U, 𝓑̂, y and Q of each link.
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
-fn inward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, X: &mut [S]) {
+fn inward<S: Scalar + From<C>, C: Scalar>(
+    model: &Model<C>, workspace: &mut Workspace<S>, limbs: &mut LongLimbs<S>, X: &mut [S],
+) {
     let slots = model.links.len() + 1;
-    let Workspace { T, F, G_hat, U, B, pivots, turned, passed, sources, .. } = workspace;
-    let (T, by_theta, by_rates) = (&T[..slots], &workspace.by_theta[..slots], &workspace.by_rates[..slots]);
-    let (turned, passed, sources) = (&mut turned[..slots], &mut passed[..slots], &mut sources[..slots]);
-    turn(model, T, Pairs { by_theta, by_rates }, [true; 2], turned, &mut []);
+    turn(model, workspace, &mut limbs.turned);
+    let mut X = Square::new(model.n(), X);
+    let Workspace { recursion: Recursion { T, F, .. }, composite: Composite { B, .. }, articulated: Articulated { G_hat, U, .. }, pivots, .. } = workspace;
+    let (T, by_theta, by_rates) = (&T[..slots], &workspace.composite.by_theta[..slots], &workspace.composite.by_rates[..slots]);
+    let LongLimbs { turned, passed, sources, .. } = limbs;
+    let (turned, passed, sources) = (&turned[..slots], &mut passed[..slots], &mut sources[..slots]);
     for i in 0..slots {
         sources[i].B_hat = columns(B[i], turned[i].R.matrix());
     }
@@ -106,7 +135,7 @@ fn inward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Work
         let one_over_d = S::one() / pivots[j];
         let moved = link.A().ad_transpose(F[i]);
         if link.is_next() {
-            carried_together(model, i, T, moved, X);
+            carried_together(model, i, T, moved, &mut X);
         }
         let Q = turned(G_hat[i] * by_theta[i].r - moved) + product(B_hat, s);
         let Q_rates = turned(G_hat[i] * by_rates[i].r.twist()) + product(B_hat, s_rates);
@@ -138,17 +167,17 @@ fn columns<S: Scalar>(B: CoriolisFactor<S>, R: Mat3<S>) -> [Wrench<S>; 3] {
 
 /// Keeps the joints' own terms: X and Y have them at their places in ∂τ.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn take_blocks<S: Scalar, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>, [X, Y]: [&[S]; 2]) {
+fn take_blocks<S: Scalar, C: Scalar>(model: &Model<C>, limbs: &mut LongLimbs<S>, [X, Y]: [&[S]; 2]) {
     let n = model.n();
     for place in model.places() {
         for j in place.velocities() {
-            workspace.passed[j + model.links.len() + 1 - n].minus_e = [-X[j * (n + 1)], -Y[j * (n + 1)]];
+            limbs.passed[j + model.links.len() + 1 - n].minus_e = [-X[j * (n + 1)], -Y[j * (n + 1)]];
         }
         if place.freedom != Freedom::One {
             for j in place.velocities() {
                 for (c, k) in place.velocities().enumerate() {
-                    workspace.blocks[j][0][c] = X[j * n + k];
-                    workspace.blocks[j][1][c] = Y[j * n + k];
+                    limbs.blocks[j][0][c] = X[j * n + k];
+                    limbs.blocks[j][1][c] = Y[j * n + k];
                 }
             }
         }
@@ -159,7 +188,7 @@ fn take_blocks<S: Scalar, C: Scalar>(model: &Model<C>, workspace: &mut Workspace
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn multiply_blocks<S: Scalar, C: Scalar>(
     model: &Model<C>,
-    workspace: &Workspace<S>,
+    limbs: &LongLimbs<S>,
     inverse: &[S],
     matrices: [&mut [S]; 2],
 ) {
@@ -170,7 +199,7 @@ fn multiply_blocks<S: Scalar, C: Scalar>(
                 for (c, k) in place.velocities().enumerate().filter(|&(_, k)| k != j) {
                     for m in 0..2 {
                         let entry = &mut matrices[m][i * n + k];
-                        *entry = inverse[i * n + j].mul_add(-workspace.blocks[j][m][c], *entry);
+                        *entry = inverse[i * n + j].mul_add(-limbs.blocks[j][m][c], *entry);
                     }
                 }
             }
@@ -181,9 +210,9 @@ fn multiply_blocks<S: Scalar, C: Scalar>(
 /// Base to tips: Φ of each link, and the accelerations with which its columns start.
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
-fn outward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Workspace<S>) {
+fn outward<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &Workspace<S>, limbs: &mut LongLimbs<S>) {
     let slots = model.links.len() + 1;
-    let Workspace { G_hat, pivots, turned, passed, sources, .. } = workspace;
+    let (Workspace { articulated: Articulated { G_hat, .. }, pivots, .. }, LongLimbs { turned, passed, sources, .. }) = (workspace, limbs);
     let (turned, passed, sources) = (&turned[..slots], &passed[..slots], &mut sources[..slots]);
     sources[0].Phi = if model.is_floating() { inverse_6(G_hat[0].to_matrix()) } else { [[S::zero(); 6]; 6] };
     for (i, link) in model.outward::<S>() {

@@ -1,8 +1,7 @@
-//! The pairs (r, s) of a joint's axis for the matrices in `dynamics/composite.rs`, in its link's own frame. Only the
-//! angular part of s is kept, because its linear part is multiplied by 0. The axis is along z; its rate has no
+//! The pairs (r, s) of a joint's axis for the matrices of `dynamics/composite_bodies.rs`, in its link's own frame. Only
+//! the angular part of s is kept, because its linear part is multiplied by 0. The axis is along z; its rate has no
 //! component along z.
 
-use crate::lie::SO3;
 use crate::linalg::Vec3;
 use crate::scalar::Scalar;
 use crate::spatial::{AxisRate, CoriolisFactor, JointAxis, SpatialInertia, Twist, Wrench};
@@ -59,26 +58,5 @@ impl<S: Scalar> ByRates<S> {
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn dot(self, F: Wrench<S>, m: Vec3<S>) -> S {
         self.s.mul_add(m.0[2], self.r.dot(F))
-    }
-}
-
-/// A link for the composite-body pass, in the base's axes, about the link's origin.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Turned<S> {
-    /// R_0i.
-    pub R: SO3<S>,
-    /// From the link's origin to the parent's.
-    pub p: Vec3<S>,
-    pub A: Twist<S>,
-    /// (r, s).
-    pub by_theta: (Twist<S>, Vec3<S>),
-    pub by_rates: (Twist<S>, Vec3<S>),
-}
-
-impl<S: Scalar> Turned<S> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn zero() -> Self {
-        let none = (Twist::zero(), Vec3::zero());
-        Turned { R: SO3::identity(), p: Vec3::zero(), A: Twist::zero(), by_theta: none, by_rates: none }
     }
 }
