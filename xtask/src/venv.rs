@@ -84,7 +84,8 @@ fn install(workspace: &Workspace, options: &[&str], file: &str) -> Result<(), St
 /// Installs requirements into the environment of this interpreter.
 pub fn pip(workspace: &Workspace, python: &Path, options: &[&str], file: &str) -> Result<(), String> {
     let mut pip = Command::new(python);
-    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"]).args(options);
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", "--no-compile"])
+        .args(options);
     command::run(pip.arg("-r").arg(workspace.path(file)))
 }
 
