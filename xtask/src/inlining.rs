@@ -42,7 +42,7 @@ fn calls(disassembly: impl Iterator<Item = String>) -> BTreeSet<String> {
         let Some((_, named)) = line.split_once('<') else { continue };
         if let Some(name) = named.strip_suffix(">:") {
             caller = name.to_owned();
-        } else if named.starts_with("fma") && !named.contains("+0x") && caller.contains("mozzi") {
+        } else if (named == "fma>" || named.starts_with("fma@")) && caller.contains("mozzi") {
             found.insert(format!("{caller} calls fma"));
         } else if let Some((_, operation)) = named.trim_end_matches('>').split_once("core_arch::") {
             let is_call = !operation.contains("+0x");
