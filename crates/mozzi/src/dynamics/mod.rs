@@ -1,4 +1,21 @@
 //! Forces and accelerations: τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇).
+//!
+//! One letter has one meaning in all kernels. Everything of a link i is in its own frame, whose z is the axis of its
+//! joint; p is its parent. Numbers in brackets are the equations of Modern Robotics.
+//!
+//! | letter | in code | meaning |
+//! |---|---|---|
+//! | T_{i,i−1} | `T` | the parent's frame seen from the link (8.50) |
+//! | A | `A` | the joint's screw axis, times the ratio of a mimic joint |
+//! | 𝒱, 𝒱̇ | `V`, `dV` | twist and its rate (8.51), (8.52) |
+//! | 𝓕 | `F` | wrench at the joint (8.53); felt with all joints beyond free, its bias |
+//! | 𝒢, 𝒢ᶜ | `G` | spatial inertia of the link; with all links beyond it, which do not move against it |
+//! | 𝓑, 𝓑ᶜ | `B` | 𝒢̇ + H(𝒢𝒱): `composite_bodies.rs` |
+//! | Ĝ, c | `G_hat`, `c` | inertia with all joints beyond free; velocity-product acceleration |
+//! | d, U, u | `d`, `U`, `u` | AᵀĜA + armature; ĜA/d; (τ − f − Aᵀ𝓕)/d |
+//! | (r, s) | `by_theta`, `by_rates` | how an axis moves: the pair of ∂τ/∂θ; of ∂τ/∂θ̇ or C |
+//! | X, Q, R | `X`, `Q`, `B.f` | how rates x move the link; 𝒢X; 𝓑ᵀX: `vjp.rs` |
+//! | i, j; p | `i`, `link.j`; `p` | slot of a link, 0 the base; place of its joint in θ̇; the parent's slot |
 
 mod armature;
 mod base_parameters;
