@@ -199,9 +199,9 @@ impl Batch<f64> {
         let given: Vec<_> = inputs.iter().map(|_| None).chain(further).chain(directions).collect();
 
         let chunks = cut(states, tables, results.into_iter().map(|(_, table, width)| (table, width)).collect());
-        self.code(&query, &arguments, states)?;
         let entry = self.programs().entry(&query, &arguments, false);
-        let program = entry.program(model, query, arguments)?;
+        let program = entry.program(model, query, arguments)?; // before its code, which is made of it
+        self.code(&query, &arguments, states)?;
         let call = Directional { request, program, given: &given, of_values };
         let recompute = |chunk: &mut Chunk<f64>, state: usize| call.one(chunk, state);
         let errors = match entry.made() {

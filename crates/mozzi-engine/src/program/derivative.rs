@@ -5,8 +5,8 @@ use crate::program::record::{TooLong, record};
 use crate::program::{Function, Program, Step, Traced};
 use mozzi::{Dual, Freedom, Model, SO3, Vec3};
 
-/// What a program computes of a quantity y = f(x). x are all inputs of the program of f: those of the quantity, then
-/// the arguments; a set of them is a number with a bit for each, in their order.
+/// The derivative of a quantity y = f(x) that a program computes. x are the inputs of the quantity, then the arguments;
+/// a set of them is a number with one bit per input, in their order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Derivative {
     /// y.
@@ -143,14 +143,14 @@ fn along_numbers(program: &Program, moving: u32, name: &str) -> Result<Program, 
     })
 }
 
-/// What a derivative along a direction has beyond its program.
+/// The inputs and outputs that a directional derivative adds to its program.
 struct Given {
     name: String,
     /// Its further inputs.
     arrays: Vec<(String, usize)>,
     /// The names of the outputs' rates.
     rates: Vec<String>,
-    /// Are the program's own outputs wanted, too?
+    /// True if the program's own outputs are kept.
     values: bool,
 }
 

@@ -40,7 +40,7 @@ impl TooLong {
     /// The largest number of steps, whose recording takes [`MOST_MEGABYTES`](Self::MOST_MEGABYTES).
     pub const MOST_STEPS: usize = 4_000_000;
 
-    /// Megabytes that a recording of so many steps takes.
+    /// Memory of a recording of that length, in megabytes.
     pub const MOST_MEGABYTES: usize = 500;
 }
 
