@@ -6,6 +6,7 @@ use crate::common;
 
 use common::folder;
 use std::io::Write;
+use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
@@ -30,25 +31,38 @@ fn batch<'a>(input: &'a str, output: &'a str) -> Vec<&'a str> {
     [&quantity[..], &["--in", input, "--out", output, "--threads", "1", "--kernels-only"]].concat()
 }
 
-/// The output after a SIGINT; nothing if the program had already ended.
+/// The output after a SIGINT; nothing if the program had already ended. A program that has not yet begun to listen is
+/// ended by the signal itself, without a word: then once more, with more time before the signal.
 fn interrupted(arguments: &[&str]) -> Option<Output> {
+    let mut wait = WAIT;
+    let output = loop {
+        let output = after_a_signal(arguments, wait);
+        if output.status.signal().is_none() || wait > 8 * WAIT {
+            break output;
+        }
+        wait *= 2;
+    };
+    if output.status.success() {
+        println!("skipped: done before it was interrupted: {arguments:?}");
+        return None;
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    let quiet = !said.contains('\u{1b}'); // no bar: no terminal
+    assert!(output.status.code() == Some(130) && quiet, "{:?}: {said}", output.status);
+    Some(output)
+}
+
+fn after_a_signal(arguments: &[&str], wait: Duration) -> Output {
     let program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
         .args(arguments)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program runs");
-    std::thread::sleep(WAIT);
+    std::thread::sleep(wait);
     let id = program.id().to_string();
     assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill runs").success());
-    let output = program.wait_with_output().expect("it ends");
-    if output.status.success() {
-        println!("skipped: done before it was interrupted: {arguments:?}");
-        return None;
-    }
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.code() == Some(130) && !said.contains('\u{1b}'), "{said}"); // no bar: no terminal
-    Some(output)
+    program.wait_with_output().expect("it ends")
 }
 
 /// The number before " of 100000 states" and the like.

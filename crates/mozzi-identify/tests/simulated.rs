@@ -75,12 +75,12 @@ fn without_noise_base_parameters_are_exact() {
 #[test]
 fn intervals_of_95_percent_contain_the_truth_in_95_percent_of_runs() {
     // noise in τ alone, of another size for each joint
-    for (name, runs, duration) in [("double_pendulum", 1000, 4.0), ("ur5", 1000, 3.0)] {
+    for (name, runs, duration) in [("double_pendulum", 1000, 4.0), ("ur5", 500, 3.0)] {
         let model = robot(name);
         let choice = Choice::all(Sensor::Motor);
         let setup = Setup::new(&model, choice.clone(), 0.3, &Limits::default()).expect("a setup");
         let x = truth(&setup.columns, 5);
-        let quiet = motion(&model, duration, 100.0, 1.5, 11);
+        let quiet = motion(&model, duration, 50.0, 1.5, 11);
         let log = with_forces(&quiet, &model, &choice, &x, &vec![0.0; model.n()], &mut Random(1));
         let noise: Vec<f64> = (0..model.n()).map(|j| 1.0 / (1 + j) as f64).collect();
         let (samples, _) = mozzi_identify::signals::prepare(&model, &log, &UNFILTERED).expect("samples");
@@ -115,7 +115,9 @@ fn intervals_of_95_percent_contain_the_truth_in_95_percent_of_runs() {
             "{name}: {} base parameters, each in {low:.1} to {high:.1} % of {runs} runs, mean {mean:.2} %",
             shares.len()
         );
-        assert!(low >= 93.0 && high <= 97.0, "{name}: {shares:?}");
+        // a share of so many runs is within three of its own deviations, and some room for the largest of all
+        let room = 100.0 * 3.2 * (0.95 * 0.05 / runs as f64).sqrt();
+        assert!(low >= 95.0 - room && high <= 95.0 + room, "{name}: {shares:?}");
     }
 }
 
@@ -221,7 +223,7 @@ fn standing(model: &Model, log: &mut Log, x: &[f64], choice: &Choice, noise: f64
 #[test]
 fn a_floating_base_is_identified_by_its_contact_wrench() {
     let model = humanoid();
-    assert_eq!(model.n(), 36);
+    assert_eq!(model.n(), 26);
     let choice = Choice::all(Sensor::Link);
     let columns = Columns::new(&model, choice.clone()).expect("columns");
     let x = truth(&columns, 6);

@@ -116,19 +116,21 @@ impl<S: Entry> Given<'_, S> {
         let (n, (_, model)) = (self.n(), self.dual_robot());
         let mut applied = Vec::new();
         let environment = self.environment.map(Dual::constant, &mut applied);
-        let tau = |theta: &[Dual<S>], dtheta: &[Dual<S>], ddtheta: &[Dual<S>]| {
-            let form = model.closed_form(theta, dtheta, &environment).expect("lengths");
+        let form =
+            |theta: &[Dual<S>], dtheta: &[Dual<S>]| model.closed_form(theta, dtheta, &environment).expect("lengths");
+        let tau = |form: &ClosedForm<Dual<S>>, ddtheta: &[Dual<S>]| {
             derivatives(list(&form.inverse_dynamics(&vector(ddtheta))))
         };
         let [theta, dtheta, ddtheta] = [self.theta(), self.inputs[1], ddtheta].map(Dual::constants);
+        let still = form(&theta, &dtheta);
         let along = |x: &[Dual<S>], j| Dual::list(&x.iter().map(|x| x.value).collect::<Vec<S>>(), &unit(n, j));
         let columns = |of: &dyn Fn(usize) -> Vec<S>| {
             DMatrix::from_columns(&(0..n).map(|j| vector(&of(j))).collect::<Vec<DVector<S>>>())
         };
         [
-            self.by_each_joint(|theta| tau(theta, &dtheta, &ddtheta)),
-            columns(&|j| tau(&theta, &along(&dtheta, j), &ddtheta)),
-            columns(&|j| tau(&theta, &dtheta, &along(&ddtheta, j))),
+            self.by_each_joint(|theta| tau(&form(theta, &dtheta), &ddtheta)),
+            columns(&|j| tau(&form(&theta, &along(&dtheta, j)), &ddtheta)),
+            columns(&|j| tau(&still, &along(&ddtheta, j))),
         ]
     }
     /// θ̈ for τ by the stacked equations and a general solver.

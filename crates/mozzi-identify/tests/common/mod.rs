@@ -139,10 +139,9 @@ pub fn humanoid() -> Model {
         }
     };
     limb("waist", "pelvis", [0.0, 0.0, 0.1], &[2, 1], 0.15, 8.0);
-    limb("neck", "waist2", [0.0, 0.0, 0.3], &[2, 1], 0.1, 2.0);
     for (side, y) in [("left", 0.15), ("right", -0.15)] {
         limb(&format!("{side}_leg"), "pelvis", [0.0, y, -0.1], &[2, 0, 1, 1, 1, 0], -0.2, 6.0);
-        limb(&format!("{side}_arm"), "waist2", [0.0, 1.5 * y, 0.25], &[1, 0, 2, 1, 2, 1, 0], -0.15, 3.0);
+        limb(&format!("{side}_arm"), "waist2", [0.0, 1.5 * y, 0.25], &[1, 0, 1], -0.25, 3.0);
     }
     robot.build().expect("sound")
 }

@@ -125,7 +125,13 @@ impl<S: Entry> Model<S> {
                     form.V_base.rows_mut(6 * i, 6).copy_from(&(&Ad * vector6(environment.base_twist)));
                     form.dV_base.rows_mut(6 * i, 6).copy_from(&(&Ad * vector6(environment.proper_base_acceleration())));
                 }
-                parent => form.W.view_mut((6 * i, 6 * (base + parent - 1)), (6, 6)).copy_from(&Ad),
+                parent => {
+                    let p = base + parent - 1;
+                    form.W.view_mut((6 * i, 6 * p), (6, 6)).copy_from(&Ad);
+                    // ℒ = I + 𝒲ℒ, row by row: parents come before their children
+                    let carried = Ad * form.L.view((6 * p, 0), (6, 6 * i));
+                    form.L.view_mut((6 * i, 0), (6, 6 * i)).copy_from(&carried);
+                }
             }
             form.A.view_mut((6 * i, link.j), (6, 1)).copy_from(&vector6(A * link.ratio));
             form.G.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&G);
@@ -143,12 +149,6 @@ impl<S: Entry> Model<S> {
             };
             let ad = matrix6(own.ad().to_matrix());
             form.ad_Adtheta.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&ad);
-        }
-        let mut power = form.W.clone();
-        let is_nan = |x: S| Into::<f64>::into(x).is_nan();
-        while power.iter().any(|&x| x != <S as Scalar>::zero()) && !power.iter().any(|&x| is_nan(x)) {
-            form.L += &power;
-            power = &form.W * power;
         }
         form.V = &form.L * (&form.A * &form.dtheta + &form.V_base);
         for i in 0..N {
@@ -170,7 +170,8 @@ impl<S: Entry> Model<S> {
 impl<S: Entry> ClosedForm<S> {
     /// M = 𝒜ᵀℒᵀ𝒢ℒ𝒜 + armature.
     pub fn mass_matrix(&self) -> DMatrix<S> {
-        self.jacobians().transpose() * &self.G * self.jacobians() + &self.armature
+        let J = self.jacobians();
+        J.tr_mul(&(&self.G * &J)) + &self.armature
     }
 
     /// The stacked body Jacobians ℒ𝒜, 6N × n: block i is J_ib, with 𝒱_i = J_ib θ̇ and M = Σ J_ibᵀ𝒢_iJ_ib.
@@ -181,8 +182,14 @@ impl<S: Entry> ClosedForm<S> {
     /// The book's matrix that multiplies θ̇ in c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇]𝒲 + `[ad_𝒱]`ᵀ𝒢)ℒ𝒜θ̇; base at rest. It gives c, but Ṁ
     /// minus twice this matrix is not skew-symmetric: see [`coriolis_matrix`](Self::coriolis_matrix).
     pub fn book_coriolis_matrix(&self) -> DMatrix<S> {
-        let inner = &self.G * &self.L * &self.ad_Adtheta * &self.W + self.ad_V.transpose() * &self.G;
-        -(self.jacobians().transpose() * inner * self.jacobians())
+        let J = self.jacobians();
+        let inner = &self.G * self.turned(&J) + self.ad_V.tr_mul(&(&self.G * &J));
+        -J.tr_mul(&inner)
+    }
+
+    /// ℒ[ad_𝒜θ̇]𝒲J, for J = ℒ𝒜.
+    fn turned(&self, J: &DMatrix<S>) -> DMatrix<S> {
+        &self.L * (&self.ad_Adtheta * (&self.W * J))
     }
 
     /// c, base at rest.
@@ -192,12 +199,12 @@ impl<S: Entry> ClosedForm<S> {
 
     /// g = 𝒜ᵀℒᵀ𝒢ℒ𝒱̇_base.
     pub fn gravity_forces(&self) -> DVector<S> {
-        self.jacobians().transpose() * &self.G * &self.L * &self.dV_base
+        self.jacobians().tr_mul(&(&self.G * (&self.L * &self.dV_base)))
     }
 
     /// JᵀF = 𝒜ᵀℒᵀ𝓕_tip.
     pub fn tip_forces(&self) -> DVector<S> {
-        self.jacobians().transpose() * &self.F_tip
+        self.jacobians().tr_mul(&self.F_tip)
     }
 
     /// 𝒱̇ = ℒ(𝒜θ̈ − [ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + 𝒱̇_base), 6N, at any motion of the base.
@@ -207,13 +214,13 @@ impl<S: Entry> ClosedForm<S> {
 
     /// 𝓕 = ℒᵀ(𝒢𝒱̇ − `[ad_𝒱]`ᵀ𝒢𝒱 + 𝓕_tip), 6N.
     pub fn wrenches(&self, ddtheta: &DVector<S>) -> DVector<S> {
-        let own = &self.G * self.accelerations(ddtheta) - self.ad_V.transpose() * &self.G * &self.V + &self.F_tip;
-        self.L.transpose() * own
+        let own = &self.G * self.accelerations(ddtheta) - self.ad_V.tr_mul(&(&self.G * &self.V)) + &self.F_tip;
+        self.L.tr_mul(&own)
     }
 
     /// τ = 𝒜ᵀ𝓕 + armature θ̈ + f(θ, θ̇), at any motion of the base.
     pub fn inverse_dynamics(&self, ddtheta: &DVector<S>) -> DVector<S> {
-        self.A.transpose() * self.wrenches(ddtheta)
+        self.A.tr_mul(&self.wrenches(ddtheta))
             + &self.armature * ddtheta
             + &self.armature_coriolis * &self.dtheta
             + &self.friction
@@ -222,7 +229,8 @@ impl<S: Entry> ClosedForm<S> {
 
     /// Ṁ = −(X + Xᵀ) with X = 𝒜ᵀℒᵀ𝒢ℒ[ad_𝒜θ̇]𝒲ℒ𝒜 (Modern Robotics, exercise 8.7); base at rest.
     pub fn mass_matrix_rate(&self) -> DMatrix<S> {
-        let X = self.jacobians().transpose() * &self.G * &self.L * &self.ad_Adtheta * &self.W * self.jacobians();
+        let J = self.jacobians();
+        let X = J.tr_mul(&(&self.G * self.turned(&J)));
         -(&X + X.transpose())
     }
 
@@ -242,9 +250,10 @@ impl<S: Entry> ClosedForm<S> {
                 }
             }
         }
-        let inner = (&self.G * &self.ad_V - self.ad_V.transpose() * &self.G + H) * S::from_f64(0.5)
-            - &self.G * &self.L * &self.ad_Adtheta * &self.W;
-        self.jacobians().transpose() * inner * self.jacobians() + &self.armature_coriolis
+        let J = self.jacobians();
+        let own = &self.G * (&self.ad_V * &J) - self.ad_V.tr_mul(&(&self.G * &J)) + H * &J;
+        let inner = own * S::from_f64(0.5) - &self.G * self.turned(&J);
+        J.tr_mul(&inner) + &self.armature_coriolis
     }
 }
 
