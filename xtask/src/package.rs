@@ -30,7 +30,8 @@ pub fn test(workspace: &Workspace, count: &mut Count) -> Outcome {
         return Outcome::Failed(why);
     }
     let mut pytest = python(workspace);
-    pytest.current_dir(&workspace.root).args(["-m", "pytest", "-p", "no:cacheprovider", "-q", "crates/mozzi-py/tests"]);
+    pytest.current_dir(&workspace.root).args(["-m", "pytest", "-p", "no:cacheprovider", "-q"]);
+    pytest.args(["-n", "auto", "--dist", "worksteal", "crates/mozzi-py/tests"]);
     tests::run_counted(&mut pytest, count, Count::add_pytest)
 }
 
