@@ -9,13 +9,14 @@
 //! its beginning for the next run, and restores the callee-saved registers of the System V ABI.
 //!
 //! Memory is writable while it is filled and executable afterwards, never both; constants are in pages of their own
-//! that become read-only.
+//! that become read-only (`memmap2`, on every system).
 
 use super::allocate::Code;
 use super::assembler::{LARGEST_ON_STACK, MOST_ARRAYS};
 use super::rows::Extent;
 use super::segments;
 use super::shape::Shape;
+use memmap2::{Mmap, MmapMut};
 use mozzi::scalar::Float;
 use std::any::TypeId;
 use std::cell::RefCell;
@@ -23,11 +24,11 @@ use std::cell::RefCell;
 /// Machine code that can be called.
 #[derive(Debug)]
 pub(crate) struct Executable {
-    pages: Pages,
+    code: Mmap,
     /// Where its segments begin.
     starts: Vec<usize>,
-    /// The offset of the constants, after the code.
-    pool: usize,
+    /// None if there are no constants.
+    pool: Option<Mmap>,
     /// Inputs, then outputs.
     extents: Vec<Extent>,
     inputs: usize,
@@ -56,8 +57,10 @@ impl Executable {
         if !shape.is_supported() {
             return None;
         }
-        let (pages, pool) = Pages::new(&code.bytes, &code.pool)?;
-        Some(Executable { pages, starts: code.starts.clone(), pool, extents, inputs, shape, frame: code.frame })
+        let (starts, frame) = (code.starts.clone(), code.frame);
+        let pool = if code.pool.is_empty() { None } else { Some(filled(&code.pool)?.make_read_only().ok()?) };
+        let code = filled(&code.bytes)?.make_exec().ok()?;
+        Some(Executable { code, starts, pool, extents, inputs, shape, frame })
     }
 
     pub fn extents(&self) -> &[Extent] {
@@ -119,7 +122,7 @@ impl Executable {
         let place = self.extents.len() - 1;
         assert!(last.len() >= self.extents[place].of(runs), "the last output has {} entries", last.len());
         addresses[place] = last.as_mut_ptr().cast();
-        addresses[place + 1] = self.pages.start.wrapping_add(self.pool);
+        addresses[place + 1] = self.pool.as_ref().map_or(std::ptr::null_mut(), |pool| pool.as_ptr().cast_mut());
         let is_alone = self.starts.len() == 1 && self.frame <= LARGEST_ON_STACK;
         if is_alone { self.enter(0, runs, addresses) } else { self.run_beside(runs, addresses) }
     }
@@ -148,7 +151,7 @@ impl Executable {
     }
 
     /// Calls the function that begins at this offset.
-    #[cfg(all(unix, target_arch = "x86_64"))]
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     fn enter(&self, start: usize, runs: usize, addresses: &Addresses) {
         // SAFETY: a whole function of this signature begins there (`assembler/function.rs`), and the processor has its
@@ -157,71 +160,20 @@ impl Executable {
         // its frame, on its stack or borrowed by `run_beside`.
         unsafe {
             let function: extern "sysv64" fn(*const *mut u8, usize) =
-                std::mem::transmute(self.pages.start.wrapping_add(start));
+                std::mem::transmute(self.code.as_ptr().wrapping_add(start));
             function(addresses.as_ptr(), runs);
         }
     }
 
-    #[cfg(not(all(unix, target_arch = "x86_64")))]
+    #[cfg(not(target_arch = "x86_64"))]
     fn enter(&self, _: usize, _: usize, _: &Addresses) {
         unreachable!("no code was made");
     }
 }
 
-/// Pages of code, and pages of constants after them.
-#[derive(Debug)]
-#[cfg_attr(not(all(unix, target_arch = "x86_64")), allow(dead_code))] // never made there
-struct Pages {
-    start: *mut u8,
-    length: usize,
-}
-
-// SAFETY: the pages are immutable once made, and are not bound to a thread.
-unsafe impl Send for Pages {}
-// SAFETY: likewise.
-unsafe impl Sync for Pages {}
-
-#[cfg(all(unix, target_arch = "x86_64"))]
-impl Pages {
-    /// Makes the pages; returns them and the offset of the constants.
-    fn new(code: &[u8], constants: &[u8]) -> Option<(Self, usize)> {
-        const PAGE: usize = 4096; // of x86-64
-        let pool = code.len().next_multiple_of(PAGE);
-        let length = pool + constants.len().next_multiple_of(PAGE);
-        // SAFETY: a new private mapping, at an address that the system chooses, aliases nothing.
-        let start = unsafe {
-            let access = libc::PROT_READ | libc::PROT_WRITE;
-            libc::mmap(std::ptr::null_mut(), length, access, libc::MAP_PRIVATE | libc::MAP_ANON, -1, 0)
-        };
-        if start == libc::MAP_FAILED {
-            return None;
-        }
-        let pages = Pages { start: start.cast(), length };
-        // SAFETY: the mapping is `length` bytes long, writable, and not shared yet; code and constants fit in their
-        // parts. Neither part is written again: the first becomes executable, the second read-only.
-        let is_granted = unsafe {
-            std::ptr::copy_nonoverlapping(code.as_ptr(), pages.start, code.len());
-            std::ptr::copy_nonoverlapping(constants.as_ptr(), pages.start.add(pool), constants.len());
-            libc::mprotect(start, pool, libc::PROT_READ | libc::PROT_EXEC) == 0
-                && (length == pool || libc::mprotect(pages.start.add(pool).cast(), length - pool, libc::PROT_READ) == 0)
-        };
-        is_granted.then_some((pages, pool))
-    }
-}
-
-#[cfg(not(all(unix, target_arch = "x86_64")))]
-impl Pages {
-    fn new(_: &[u8], _: &[u8]) -> Option<(Self, usize)> {
-        None
-    }
-}
-
-impl Drop for Pages {
-    fn drop(&mut self) {
-        #[cfg(all(unix, target_arch = "x86_64"))]
-        // SAFETY: this value owns the mapping, and no call is running: a call borrows it.
-        unsafe {
-            libc::munmap(self.start.cast(), self.length);
-        }
-    }
+/// Pages of their own that begin with these bytes.
+fn filled(bytes: &[u8]) -> Option<MmapMut> {
+    let mut pages = MmapMut::map_anon(bytes.len()).ok()?;
+    pages[..bytes.len()].copy_from_slice(bytes);
+    Some(pages)
 }
