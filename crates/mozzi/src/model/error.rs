@@ -140,6 +140,17 @@ pub enum Error {
         /// The steps, their reason, and a remedy.
         cause: String,
     },
+    /// A joint reaches a limit that is respected, by a method of smooth motion, which has no stops.
+    StopActs {
+        /// The joint.
+        joint: String,
+        /// rad or m.
+        limit: f64,
+        /// Seconds.
+        time: f64,
+        /// The method.
+        method: &'static str,
+    },
     /// The iteration of an implicit step does not converge.
     NoConvergence {
         /// The joint whose velocity changes most between iterations.
@@ -232,6 +243,10 @@ impl fmt::Display for Error {
             Error::Stalled { time, joint, cause } => {
                 write!(f, "the simulation does not advance at t = {time} s, because of joint `{joint}`: {cause}")
             }
+            Error::StopActs { joint, limit, time, method } => write!(
+                f,
+                "joint `{joint}` reaches its limit {limit} at t = {time} s, and {method} has no stops: `moreau` or `auto` has"
+            ),
             Error::NoConvergence { joint, time, step, iterations } => write!(
                 f,
                 "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations at joint `{joint}`, which is stiff, \

@@ -30,7 +30,7 @@ impl Admm {
         let positive = values.iter().filter(|x| **x > 1e-9 * largest).fold(largest, |least, x| least.min(*x));
         let rho = Scalar::sqrt(positive.max(1e-3 * largest) * largest);
         let mut y = guess.clone();
-        project(problem, &mut y);
+        problem.project(&mut y);
         let factors = shifted(problem, PROXIMAL * largest + rho);
         let z = problem.velocity(guess);
         Admm { p: guess.clone(), y, z, rho, largest, factors, iterations: 0, done: false }
@@ -60,7 +60,7 @@ impl Admm {
             }
             self.p = right;
             let before = core::mem::replace(&mut self.y, &self.p - &self.z / self.rho);
-            project(problem, &mut self.y);
+            problem.project(&mut self.y);
             let gap = &self.p - &self.y;
             self.z -= &gap * self.rho;
             let (primal, dual) = (gap.amax(), self.rho * (&self.y - before).amax());
@@ -88,10 +88,4 @@ fn shifted(problem: &Problem, shift: f64) -> LU<f64, Dyn, Dyn> {
     let mut G: DMatrix<f64> = problem.G.clone();
     (0..G.nrows()).for_each(|r| G[(r, r)] += shift);
     G.lu()
-}
-
-fn project(problem: &Problem, x: &mut DVector<f64>) {
-    for (first, law) in problem.blocks() {
-        law.project(&mut x.as_mut_slice()[first..first + law.rows()]);
-    }
 }

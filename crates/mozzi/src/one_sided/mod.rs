@@ -7,24 +7,26 @@
 //! u is the velocity of the surroundings as seen from the robot; for a contact u_n is the rate of the gap. Each block
 //! of rows has a [`Law`] between its p and its u. G (the Delassus matrix) may be singular: p is then not unique, u is.
 //!
-//! [`solve`] takes semi-smooth Newton steps from a guess (Alart and Curnier 1991), then sweeps of projected
-//! Gauss-Seidel that solve each contact exactly, then the alternating direction method of multipliers (Carpentier, Le
-//! Lidec and Montaut 2024). It returns the best p and its [`residual`]. A problem may have no solution, for example if
-//! no velocity opens all contacts; the residual then remains.
+//! [`solve`] takes semi-smooth Newton steps from a guess (Alart and Curnier 1991), with a proximal term whose weight
+//! falls; then sweeps of projected Gauss-Seidel that solve each contact exactly, then the alternating direction method
+//! of multipliers (Carpentier, Le Lidec and Montaut 2024), each followed by Newton steps again. It returns the best p
+//! and its [`residual`]. A problem may have no solution, for example if no velocity opens all contacts; the residual
+//! then remains.
 
 mod admm;
 mod law;
 mod newton;
 mod point_contact;
+mod scaled;
 mod sweeps;
 #[cfg(test)]
 mod tests;
 
 pub use law::Law;
-pub(crate) use newton::least_squares;
 
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
+use scaled::Scaled;
 
 /// G, b and the laws of the rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,15 +54,30 @@ pub struct Solution {
     pub admm_iterations: usize,
 }
 
-/// Newton steps from one guess.
-const NEWTON_STEPS: usize = 6;
+/// ε of Newton steps from a good guess, and from any.
+const NEAR: [f64; 6] = [1e-8; 6];
+const FAR: [f64; 25] = {
+    let mut weights = [1e-6; 25];
+    let mut k = 0;
+    while k < 10 {
+        weights[k] = if k < 4 {
+            1e-3
+        } else if k < 7 {
+            1e-4
+        } else {
+            1e-5
+        };
+        k += 1;
+    }
+    weights
+};
 /// Sweeps before the last method.
 const SWEEPS: usize = 20;
-/// The last method is used if the residual is above this many tolerances.
-const ENOUGH: f64 = 100.0;
-/// Iterations of the last method between two Newton polishes, and the number of such rounds.
-const ADMM_CHUNK: usize = 100;
-const ADMM_ROUNDS: usize = 60;
+/// A residual of this many tolerances is accepted where Newton's method does not give more.
+const ENOUGH: f64 = 1e4;
+/// Iterations of the last method between Newton steps, and the number of such rounds.
+const ADMM_CHUNK: usize = 40;
+const ADMM_ROUNDS: usize = 15;
 
 impl Problem {
     /// u = G p + b.
@@ -76,6 +93,13 @@ impl Problem {
             next += law.rows();
             (first, law)
         })
+    }
+
+    /// Makes impulses admissible.
+    fn project(&self, p: &mut DVector<f64>) {
+        for (first, law) in self.blocks() {
+            law.project(&mut p.as_mut_slice()[first..first + law.rows()]);
+        }
     }
 
     /// g of each row: the mean diagonal entry of G in the row's block. 1 for a block that nothing moves.
@@ -94,81 +118,76 @@ impl Problem {
 /// the normal of a contact (De Saxcé and Feng 1998) and g the mean of the block's diagonal of G. It is 0 exactly for a
 /// solution.
 pub fn residual(problem: &Problem, p: &DVector<f64>) -> f64 {
-    residual_with(problem, &problem.scales(), p)
+    Scaled::new(problem, p).residual
 }
 
-fn residual_with(problem: &Problem, scales: &[f64], p: &DVector<f64>) -> f64 {
+/// The same of a problem whose g is 1, times the factor of each row.
+fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
     let u = problem.velocity(p);
     let (mut most, mut x) = (0.0_f64, [0.0; 3]);
     for (first, law) in problem.blocks() {
-        let (rows, g) = (first..first + law.rows(), scales[first]);
+        let rows = first..first + law.rows();
         let shift = law.shift(&u.as_slice()[rows.clone()]);
         let x = &mut x[..law.rows()];
         for (k, r) in rows.clone().enumerate() {
-            x[k] = p[r] - (u[r] + if k == 0 { shift } else { 0.0 }) / g;
+            x[k] = p[r] - u[r] - if k == 0 { shift } else { 0.0 };
         }
         law.project(x);
         for (k, r) in rows.enumerate() {
-            let error = (p[r] - x[k]).abs() * g;
+            let error = (p[r] - x[k]).abs() * factors[r];
             most = if error <= most { most } else { error }; // NaN passes
         }
     }
     most
 }
 
-/// Impulses from a guess of m numbers, whose residual is at most `tolerance`; if Newton's method and the sweeps do not
-/// get there, at most 100 times that; or the best that were found. At most 6,000 iterations.
+/// Impulses from a guess of m numbers, whose residual is at most `tolerance`; at most 10⁴ times that where Newton's method
+/// does not give more; or the best that were found, after at most 600 iterations of the last method.
 ///
 /// # Panics
 /// When the guess is not m long.
 pub fn solve(problem: &Problem, guess: &DVector<f64>, tolerance: f64) -> Solution {
-    let scales = problem.scales();
     let m = problem.b.len();
     assert!(guess.len() == m, "the guess has {} entries, expected {m}", guess.len());
-    let mut best = Solution {
-        p: guess.clone(),
-        residual: residual_with(problem, &scales, guess),
-        newton_steps: 0,
-        sweeps: 0,
-        admm_iterations: 0,
+    let mut found = Solution { p: guess.clone(), residual: 0.0, newton_steps: 0, sweeps: 0, admm_iterations: 0 };
+    if m == 0 {
+        return found;
+    }
+    if !problem.G.as_slice().iter().chain(problem.b.as_slice()).all(|x| x.is_finite()) {
+        found.residual = f64::NAN;
+        return found;
+    }
+    let mut of = Scaled::new(problem, guess);
+    if !of.residual.is_finite() {
+        of = Scaled::new(problem, &DVector::zeros(m));
+    }
+    let start = of.best.clone();
+    let mut newton = |of: &mut Scaled, p: DVector<f64>, weights: &[f64]| {
+        found.newton_steps += newton::newton(of, p, weights, tolerance);
     };
-    let is_finite = problem.G.as_slice().iter().chain(problem.b.as_slice()).all(|x| x.is_finite());
-    if !is_finite {
-        best.residual = f64::NAN;
+    newton(&mut of, start, &NEAR);
+    if of.residual > tolerance {
+        let p = of.best.clone();
+        newton(&mut of, p, &FAR);
     }
-    if m == 0 || !is_finite || best.residual <= tolerance {
-        return best;
+    if of.residual > ENOUGH * tolerance {
+        let mut p = of.best.clone();
+        found.sweeps = sweeps::sweep(&of.problem, &mut p, tolerance, SWEEPS);
+        of.offer(&p);
+        newton(&mut of, p, &NEAR);
     }
-    if !best.residual.is_finite() {
-        best.p.fill(0.0);
-        best.residual = residual_with(problem, &scales, &best.p);
-    }
-    best.polish(problem, &scales, best.p.clone(), tolerance);
-    if best.residual > tolerance {
-        let mut p = best.p.clone();
-        best.sweeps += sweeps::sweep(problem, &mut p, tolerance, SWEEPS);
-        best.polish(problem, &scales, p, tolerance);
-    }
-    if best.residual > ENOUGH * tolerance {
-        let mut method = admm::Admm::new(problem, &best.p);
+    if of.residual > ENOUGH * tolerance {
+        let mut method = admm::Admm::new(&of.problem, &of.best);
         for _ in 0..ADMM_ROUNDS {
-            best.admm_iterations += method.iterate(problem, tolerance, ADMM_CHUNK);
-            best.polish(problem, &scales, method.impulses().clone(), tolerance);
-            if best.residual <= tolerance || method.is_done() {
+            found.admm_iterations += method.iterate(&of.problem, tolerance, ADMM_CHUNK);
+            let p = method.impulses().clone();
+            of.offer(&p);
+            newton(&mut of, p, &FAR);
+            if of.residual <= ENOUGH * tolerance || method.is_done() {
                 break;
             }
         }
     }
-    best
-}
-
-impl Solution {
-    /// Newton steps from p; keeps the result if it is better.
-    fn polish(&mut self, problem: &Problem, scales: &[f64], p: DVector<f64>, tolerance: f64) {
-        let (found, residual, steps) = newton::polish(problem, scales, p, tolerance, NEWTON_STEPS);
-        self.newton_steps += steps;
-        if residual < self.residual {
-            (self.p, self.residual) = (found, residual);
-        }
-    }
+    (found.p, found.residual) = (of.impulses(), of.residual);
+    found
 }

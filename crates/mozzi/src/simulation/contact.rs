@@ -125,6 +125,13 @@ pub(super) struct Surface {
     pub V: Twist,
 }
 
+impl Surface {
+    /// How far a point in {s} is above it.
+    pub fn height(&self, at: Vec3) -> f64 {
+        (self.T.R * Vec3([0.0, 0.0, 1.0])).dot(at - self.T.p)
+    }
+}
+
 /// A contact point next to a plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
@@ -145,6 +152,14 @@ impl ContactPoint {
     /// A sharp point, without restitution.
     pub fn new(name: impl Into<String>, frame: FrameId, center: Vec3, mu: f64) -> Self {
         ContactPoint { name: name.into(), frame, center, support: Support::Point, mu, restitution: 0.0 }
+    }
+
+    /// How far what is around the centre reaches from it.
+    pub(super) fn radius(&self) -> f64 {
+        match self.support {
+            Support::Point => 0.0,
+            Support::Sphere { radius } | Support::Disc { radius, .. } => radius,
+        }
     }
 
     /// The point that is farthest in a direction, in the frame.

@@ -1,19 +1,18 @@
 //! The simulation loop: steps, events and stops within them, and recorded rows.
 
-use super::across::Crowd;
+use super::contact::Contacts;
 use super::dense::Dense;
 use super::dormand_prince::DormandPrince;
 use super::driven::Driven;
 use super::events::{Event, Occurrence, first_zero, parts};
 use super::impulses::{Impulses, Key};
 use super::midpoint::Midpoint;
-use super::modes::Modes;
 use super::moreau::Moreau;
 use super::options::check;
 use super::stall::{Stall, Trouble};
 use super::state::State;
 use super::stops::Stops;
-use super::{Ending, Equation, Explicit, Input, Method, Motion, Options, Recorder, Sample, Simulation};
+use super::{Ending, Equation, Explicit, Friction, Input, Method, Motion, Options, Recorder, Sample, Simulation};
 use crate::model::{Error, Model};
 use alloc::boxed::Box;
 use alloc::format;
@@ -65,8 +64,6 @@ pub(super) struct Course<'r> {
     pub(super) touching: Vec<(Key, bool)>,
     pub stops: Stops,
     stall: Stall,
-    /// Events of an adaptive method.
-    pub(super) crowd: Crowd,
     pub(super) motion: Motion<f64, 3>,
     /// The state at the beginning of the step; kept only if something may happen within it.
     pub(super) from: State,
@@ -97,16 +94,16 @@ impl<'r> Course<'r> {
         options.check()?;
         let contacts = &simulation.contacts;
         let is_forced = options.method == Method::MoreauJean;
-        let mut impulses = Impulses::new(model, contacts, &options, is_forced)?.map(Box::new);
+        let impulses = Impulses::new(model, contacts, &options, is_forced)?;
         options.method = options.method.resolved(impulses.is_some());
+        let impulses = impulses.filter(|_| options.method == Method::MoreauJean).map(Box::new);
+        if impulses.is_none() {
+            refuse_one_sided(model, contacts, &options)?;
+        }
         let equation = Equation::new(model, input, &options).with_forward_dynamics(simulation.forward_dynamics)?;
         let mut driven = Driven::new(equation);
         let has_impulses = impulses.is_some();
         driven.equation.has_impulses = has_impulses;
-        if options.method.is_adaptive() {
-            let gravity = options.gravity.unwrap_or(model.gravity()).norm();
-            driven.modes = impulses.take().map(|impulses| Box::new(Modes::new(model, *impulses, gravity)));
-        }
         let (mut theta, mut dtheta) = (theta.to_vec(), dtheta.to_vec());
         driven.close_start(&mut theta, &mut dtheta)?;
         let (theta, dtheta) = (&theta[..], &dtheta[..]);
@@ -117,12 +114,11 @@ impl<'r> Course<'r> {
             driven.evaluate(t, q, dq, ddq)
         })?;
         let takes_equal_steps = match &integrator {
-            Integrator::Explicit(_) => true,
-            Integrator::Midpoint(_) | Integrator::MoreauJean(_) => impulses.is_some(),
-            Integrator::DormandPrince(_) => false,
+            Integrator::Explicit(_) | Integrator::MoreauJean(_) => true,
+            Integrator::Midpoint(_) | Integrator::DormandPrince(_) => false,
         };
         let mut course = Course {
-            is_watched: !takes_equal_steps || !simulation.events.is_empty() || stops.are_located(),
+            is_watched: !takes_equal_steps || !simulation.events.is_empty() || stops.are_missed(),
             ending: Ending::new(options.method),
             options,
             events: &simulation.events,
@@ -132,7 +128,6 @@ impl<'r> Course<'r> {
             touching: Vec::new(),
             stops,
             stall: Stall::new(&options),
-            crowd: Crowd::new(&options, contacts.pairs()),
             from: State::of(&motion),
             motion,
             next: options.record_every,
@@ -150,11 +145,6 @@ impl<'r> Course<'r> {
         if duration == 0.0 {
             self.ending.complete = true;
             return Ok(());
-        }
-        if self.stops.are_located() {
-            let mut state = State::of(&self.motion);
-            self.stops.stop_at_limits(&mut state, &mut self.driven)?;
-            state.copy_to(&mut self.motion);
         }
         let mut over = false;
         while !over && !self.is_closed {
@@ -210,52 +200,24 @@ impl<'r> Course<'r> {
         self.from.copy_from(&self.motion);
         self.driven.at_step(done, if method.is_adaptive() { duration } else { step });
         self.ending.steps = done;
-        let dense = match self.step(step) {
-            Err(Error::Stalled { .. }) if self.driven.modes.is_some() => return self.step_across(),
-            dense => dense?,
-        };
-
+        let dense = self.step(step)?;
         let reached = self.motion.t;
-        let respected = self.stops.are_located();
-        let impact = if respected { self.stops.first_impact(model, &dense, reached, &self.driven.held) } else { None };
-        let mut end = impact.map_or(reached, |(t, ..)| t);
-        let until = if impact.is_some() { dense.at(model, end) } else { State::of(&self.motion) };
-        let release = self.stops.first_release(&dense, &until, &mut self.driven)?;
-        let impact = impact.filter(|_| release.is_none());
-        let change = self.driven.first_change(&dense, reached)?;
-        end = release.or(change).unwrap_or(end);
+        let stop = if self.stops.are_missed() { self.stops.acts(model, &dense, reached, method) } else { None };
+        let mut end = stop.as_ref().map_or(reached, |(t, _)| *t);
         let over = self.events_until(&dense, &mut end);
         self.rows_until(&dense, end)?;
-        let happens = impact.is_some() || release.is_some() || change.is_some();
-        if end < reached || happens {
+        if let (Some((_, error)), false) = (stop, over) {
+            return Err(error);
+        }
+        if end < reached {
             let mut there = dense.at(model, end);
             there.ddtheta.copy_from_slice(&self.motion.ddtheta);
             there.copy_to(&mut self.motion);
             self.close()?;
             self.complete()?;
         }
-        let mut state = State::of(&self.motion);
-        match impact.filter(|(t, ..)| *t <= end) {
-            Some((_, k, side)) => self.stops.stop(&mut state, k, side, &mut self.driven)?,
-            None => {
-                self.driven.keep_at_limits(&mut state)?;
-                self.driven.release(&mut state)?;
-            }
-        }
-        if respected {
-            self.stops.stop_at_limits(&mut state, &mut self.driven)?;
-        }
-        match change.filter(|t| *t <= end) {
-            Some(_) => self.switch(&mut state)?,
-            None => self.driven.keep_modes(&mut state)?,
-        }
-        state.copy_to(&mut self.motion);
-        if self.driven.modes.is_some() && self.crowd.note(state.t, change.is_some()) && !over && state.t < duration {
-            self.from.copy_from(&self.motion);
-            return self.step_across();
-        }
-        self.stall.check(model, &self.options, state.t, self.integrator.trouble())?;
-        if end != dense.t + dense.h || happens {
+        self.stall.check(model, self.motion.t, self.integrator.trouble())?;
+        if end != dense.t + dense.h {
             self.integrator.restart();
         }
         Ok(over)
@@ -320,7 +282,6 @@ impl<'r> Course<'r> {
         while !self.is_closed && self.next < self.options.steps && self.options.time(self.next) < end {
             let mut row = dense.at(self.driven.model, self.options.time(self.next));
             self.driven.close(row.t, &mut row.theta, &mut row.dtheta)?;
-            self.driven.keep_at_limits(&mut row)?;
             match &self.impulses {
                 Some(_) => {
                     row.ddtheta.copy_from_slice(&self.motion.ddtheta);
@@ -331,7 +292,7 @@ impl<'r> Course<'r> {
             self.next += self.options.record_every;
             let energy = self.driven.energy(&row.theta, &row.dtheta, row.works);
             let State { t, theta, dtheta, ddtheta, .. } = &row;
-            let contact_forces = forces(&self.impulses, &self.driven);
+            let contact_forces = forces(&self.impulses);
             let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
             self.is_closed = self.recorder.take(&row).is_break();
         }
@@ -380,16 +341,29 @@ impl<'r> Course<'r> {
     fn record(&mut self) {
         let Motion { t, theta, dtheta, ddtheta, integrals, .. } = &self.motion;
         let energy = self.driven.energy(theta, dtheta, *integrals);
-        let contact_forces = forces(&self.impulses, &self.driven);
+        let contact_forces = forces(&self.impulses);
         let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
         self.is_closed = self.recorder.take(&row).is_break();
     }
 }
 
 /// The contact forces.
-fn forces<'a>(impulses: &'a Option<Box<Impulses>>, driven: &'a Driven) -> &'a [f64] {
-    let modes = driven.modes.as_ref().map(|modes| &modes.impulses.forces);
-    impulses.as_ref().map(|impulses| &impulses.forces).or(modes).map_or(&[], |forces| forces)
+fn forces<'a>(impulses: &'a Option<Box<Impulses>>) -> &'a [f64] {
+    impulses.as_ref().map_or(&[], |impulses| &impulses.forces)
+}
+
+/// A smooth method has no dry friction and no contacts.
+fn refuse_one_sided(model: &Model, contacts: &Contacts, options: &Options) -> Result<(), Error> {
+    let is_dry = |j: &usize| options.friction == Friction::Coulomb && model.friction[*j] > 0.0;
+    let joint = (0..model.n()).find(is_dry).and_then(|j| model.velocity_names().nth(j));
+    let (what, remedy) = match joint {
+        Some(joint) => {
+            (format!("dry friction of `{joint}`"), "`moreau` or `auto` for dry friction, or friction that is smooth")
+        }
+        None => (format!("{} contact points", contacts.points.len()), "`moreau` or `auto` for contacts"),
+    };
+    let found = || format!("{}, which has none of the robot's {what}", options.method.name());
+    if joint.is_none() && contacts.is_empty() { Ok(()) } else { check(false, "the method", found(), remedy) }
 }
 
 /// A step from t, and its end: the full length, or to `until` if at most a rounding error would be left for a last

@@ -56,11 +56,6 @@ impl DormandPrince {
         DormandPrince { tolerance, h: 1e-3, trouble: Trouble::new(n), k, y: zeros, theta: vec![0.0; nq] }
     }
 
-    /// The next step may be this long again.
-    pub fn restart(&mut self, h: f64) {
-        self.h = self.h.max(h);
-    }
-
     /// A step to `until` at most.
     pub fn step(&mut self, from: &State, until: f64, driven: &mut Driven) -> Result<(State, Dense), Error> {
         let (model, n) = (driven.model, from.dtheta.len());
@@ -72,7 +67,7 @@ impl DormandPrince {
             // no tiny remainder is left for a last step
             let h = if self.h >= 0.99 * room { room } else { self.h };
             if !(h > 1e-13 * from.t.abs().max(1e-3).max(1e-6 * until)) && room > h {
-                return Err(too_short(model, driven.options(), [from.t, h], self.tolerance, self.trouble.sensitive));
+                return Err(too_short(model, [from.t, h], self.tolerance, self.trouble.sensitive));
             }
             changes.fill(false);
             for stage in 1..7 {

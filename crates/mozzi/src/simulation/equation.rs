@@ -58,7 +58,6 @@ pub struct Equation<'m, I> {
     /// Is dry friction not part of θ̈, because impulses produce it?
     pub(super) has_impulses: bool,
     /// Further constant forces of a step, −Jᵀp/Δt, whose work is not part of the powers.
-    pub(super) extra: Vec<f64>,
     wrenches: Vec<(FrameId, Wrench)>,
     columns: Vec<Twist>,
     fast: fast::Workspace,
@@ -82,7 +81,6 @@ impl<'m, I: Input> Equation<'m, I> {
             force: vec![0.0; model.n()],
             lambda: vec![0.0; model.constraint_rows()],
             has_impulses: false,
-            extra: vec![0.0; model.n()],
             wrenches: Vec::new(),
             columns: vec![Twist::zero(); model.n()],
             fast: fast::Workspace::new(model),
@@ -289,7 +287,7 @@ impl<'m, I: Input> Equation<'m, I> {
                 Friction::Coulomb => coulomb,
                 Friction::Smooth { .. } => self.smooth_friction(j, rate),
             };
-            self.force[j] = self.tau[j] + (coulomb - law) + self.extra[j];
+            self.force[j] = self.tau[j] + (coulomb - law);
             power += rate * (damping * rate + law);
         }
         power

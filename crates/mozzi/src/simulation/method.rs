@@ -6,7 +6,7 @@ use crate::model::Error;
 /// such a step on any number type, see [`explicit`](Self::explicit). With θ̈ = F(t, θ, θ̇) and step h:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// [`MoreauJean`](Self::MoreauJean) if the robot has dry friction or contacts, else
+    /// [`MoreauJean`](Self::MoreauJean) if the robot has dry friction or contacts, or limits that are respected, else
     /// [`RungeKutta4`](Self::RungeKutta4).
     Automatic,
     /// Moreau and Jean's step with θ = ½, for dry friction, stops and contacts: their impulses are solved for together

@@ -103,10 +103,6 @@ impl Midpoint {
             }
             let mut next = momentum;
             driven.mass.divide(next.as_mut_slice());
-            if !driven.held.is_empty() {
-                driven.factor(&theta)?;
-                driven.bring_to_rest(&theta, None, next.as_mut_slice());
-            }
             let differences = &next - &v;
             worst = (n > 0).then(|| differences.iamax());
             let change = differences.amax() / (1.0 + next.amax());
@@ -136,14 +132,10 @@ impl Midpoint {
         to.theta.copy_from_slice(&from.theta);
         integrate(model, &mut to.theta, v.as_slice(), h);
         (0..3).for_each(|k| to.works[k] += h * powers[k]);
-        driven.factor(&to.theta)?;
+        driven.mass.factor(&to.theta, 0.0, &[])?;
         to.dtheta.copy_from_slice(p.as_slice());
         driven.mass.divide(&mut to.dtheta);
-        if driven.held.is_empty() {
-            self.momentum = Some((to.t, p));
-        } else {
-            driven.bring_to_rest(&to.theta, None, &mut to.dtheta);
-        }
+        self.momentum = Some((to.t, p));
         driven.complete(&mut to)?;
         Ok(to)
     }

@@ -11,15 +11,14 @@
 //! | `Euler`, `SemiImplicitEuler`, `RungeKutta4` | 1, 1, 4 | fixed | the book's loop; real time |
 //! | `DormandPrince` | 5 | adaptive | smooth motions, to a tolerance |
 //! | `Midpoint` | 2 | fixed | long motions: the energy's error is bounded |
-//! | `MoreauJean` | 2 | fixed | dry friction, contacts; `Automatic` chooses it for them, else `RungeKutta4` |
+//! | `MoreauJean` | 2 | fixed | dry friction, stops, contacts; `Automatic` chooses it for them, else `RungeKutta4` |
 //!
 //! A robot with [constraints](crate::constraints) moves by its constrained forward dynamics, and is brought back onto
 //! the constraints after each step: [`Ending::closing`] reports by how much.
 //!
-//! Dry friction, stops next to it, and contacts are solved for as impulses of a step ([`one_sided`](crate::one_sided)).
-//! A step of `MoreauJean` ends where a joint comes to rest. Other fixed steps are repeated with constant forces until
-//! the laws hold at their end, so that they are of order 1 there. `DormandPrince` stops at events: touch-down,
-//! lift-off, slip and stick. [`Ending::one_sided`] reports the residuals.
+//! Dry friction, stops and contacts are solved for as impulses of a step ([`one_sided`](crate::one_sided)), by
+//! `MoreauJean` alone; other methods are for smooth motions, and refuse them. A step ends where a joint with dry friction
+//! comes to rest. [`Ending::one_sided`] reports the residuals.
 //!
 //! Gradients of a loss through N steps, by start, torques and parameters: [`Rollout`].
 //!
@@ -27,7 +26,6 @@
 //! zeros of functions of (t, θ, θ̇), on the polynomial between two steps, treats the joints' limits by a [`Policy`],
 //! and passes each row to a [`Recorder`], so that a long motion need not be kept in memory.
 
-mod across;
 mod closing;
 mod condition;
 mod contact;
@@ -39,13 +37,11 @@ mod equation;
 mod events;
 mod factored_mass;
 mod friction;
-mod held;
 mod impulse_steps;
 mod impulses;
 mod input;
 mod method;
 mod midpoint;
-mod modes;
 mod moreau;
 mod motion;
 mod options;
@@ -64,8 +60,6 @@ mod trajectory;
 mod against_stops;
 #[cfg(test)]
 mod balls;
-#[cfg(test)]
-mod between;
 #[cfg(test)]
 mod free_base;
 #[cfg(test)]

@@ -6,9 +6,10 @@
 //! them, and impulses p of constraints, stops, dry friction and contacts. A step is divided where a joint with dry
 //! friction comes to rest.
 
+use super::driven::Driven;
 use super::equation::Equation;
 use super::events::bisect_until;
-use super::impulses::{Choice, Impulses, Key, Solved, System};
+use super::impulses::{Impulses, Key, Solved, System};
 use super::{Input, Powers};
 use crate::kinematics::integrate;
 use crate::lie::SO3;
@@ -18,8 +19,14 @@ use crate::one_sided::Law;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Evaluations of the smooth forces: with θ̇, then with ½(θ̇ + θ̇⁺).
-const PASSES: usize = 2;
+/// Evaluations of the smooth forces: with θ̇, then with ½(θ̇ + θ̇⁺), until θ̇⁺ changes by less than `SETTLED`, relative
+/// to 1 + |θ̇⁺|.
+const PASSES: usize = 6;
+const SETTLED: f64 = 1e-10;
+/// A change that is above this after the last pass means that the step is too long, as does one that does not shrink.
+const UNSETTLED: f64 = 1e-6;
+/// A step is halved until it settles and loops close, at most to this part of it.
+const SHORTEST: f64 = 1.0 / 64.0;
 /// A step is divided at most this often.
 const DIVISIONS: usize = 8;
 /// Joints slower than this are at rest, rad/s or m/s.
@@ -33,8 +40,6 @@ pub(super) struct Moreau {
     joints: [Vec<f64>; 2],
     gains: [Vec<f64>; 2],
     implicit: [Vec<f64>; 2],
-    /// Is the step divided where a joint comes to rest?
-    pub divides: bool,
 }
 
 /// Where a step starts.
@@ -52,6 +57,8 @@ pub(super) struct Trial {
     pub system: System,
     pub solved: Solved,
     to: Phase,
+    /// Did θ̇⁺ converge?
+    settles: bool,
 }
 
 impl Moreau {
@@ -62,31 +69,67 @@ impl Moreau {
             stiffness[spring.place.j] += spring.stiffness;
         }
         let zeros = || [vec![0.0; n], vec![0.0; n]];
-        Moreau { joints: [stiffness, model.damping.clone()], gains: zeros(), implicit: zeros(), divides: true }
+        Moreau { joints: [stiffness, model.damping.clone()], gains: zeros(), implicit: zeros() }
     }
 
-    /// A step of h seconds.
+    /// A step of h seconds: in parts of half the length, and so on, where its iteration does not contract, or a loop does
+    /// not close.
     pub fn step<I: Input>(
         &mut self,
-        equation: &mut Equation<'_, I>,
+        driven: &mut Driven<'_, I>,
         impulses: &mut Impulses<'_>,
         state: &mut Phase,
         h: f64,
     ) -> Result<(), Error> {
         self.gains.iter_mut().for_each(|list| list.fill(0.0));
         let [stiffness, damping] = &mut self.gains;
-        equation.input.gains(stiffness, damping);
+        driven.equation.input.gains(stiffness, damping);
         for k in 0..2 {
             let sums = self.joints[k].iter().zip(&self.gains[k]).map(|(joint, motor)| joint + motor);
             self.implicit[k] = sums.collect();
         }
+        let (mut done, mut length) = (0.0, h);
+        while done < h * (1.0 - 1e-12) {
+            let part = length.min(h - done);
+            let is_shortest = part <= h * SHORTEST;
+            let start = (state.clone(), impulses.memory.clone());
+            match self.part(driven, impulses, state, part, is_shortest) {
+                Ok(true) => done += part,
+                Err(error) if is_shortest || !is_too_long(&error) => return Err(error),
+                Ok(false) | Err(_) => {
+                    (*state, impulses.memory) = start;
+                    length = 0.5 * part;
+                    impulses.account.halvings += 1;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A part of a step, of h seconds, then positions and loops put right. False if its iteration does not contract,
+    /// unless it counts nevertheless.
+    fn part<I: Input>(
+        &mut self,
+        driven: &mut Driven<'_, I>,
+        impulses: &mut Impulses<'_>,
+        state: &mut Phase,
+        h: f64,
+        counts: bool,
+    ) -> Result<bool, Error> {
+        let (equation, end) = (&mut driven.equation, state.t + h);
         let mut rest = h;
         for division in 0..=DIVISIONS {
             let trial = self.trial(equation, impulses, state, rest, &[])?;
-            let stopping = if self.divides && division < DIVISIONS { stopping(&trial, state) } else { Vec::new() };
+            if !trial.settles {
+                if !counts {
+                    return Ok(false);
+                }
+                impulses.account.unsettled += 1;
+            }
+            let stopping = if division < DIVISIONS { stopping(&trial, state) } else { Vec::new() };
             let Some((s, trial_there)) = self.first_rest(equation, impulses, state, rest, &stopping)? else {
                 commit(impulses, state, &trial);
-                return Ok(());
+                break;
             };
             commit(impulses, state, &trial_there);
             for &j in &stopping {
@@ -96,10 +139,21 @@ impl Moreau {
             }
             rest -= s;
             if rest <= 1e-14 * h {
-                return Ok(());
+                break;
             }
         }
-        Ok(())
+        state.t = end;
+        let before =
+            (!impulses.memory.carrying.is_empty()).then(|| equation.energy(&state.theta, &state.dtheta, state.works));
+        if let (true, Some(before)) = (impulses.correct(end, &mut state.theta, h)?, before) {
+            let after = equation.energy(&state.theta, &state.dtheta, state.works);
+            let lifted = after.kinetic + after.potential - before.kinetic - before.potential;
+            impulses.account.lifted += lifted;
+            // what touched did so earlier or later in the step, at another speed: the contacts' loss is that much less
+            state.works[1] -= lifted;
+        }
+        driven.close(end, &mut state.theta, &mut state.dtheta)?;
+        Ok(true)
     }
 
     /// The time at which the first of these joints comes to rest, while they slide, and the step until then.
@@ -156,13 +210,18 @@ impl Moreau {
         straight(model, &mut theta, &state.dtheta, 0.5 * h);
         let v = turned(model, &state.dtheta, &state.dtheta, -0.5 * h); // in the axes of the middle
         let diagonal: Vec<f64> = (0..n).map(|j| 0.5 * h * damping[j] + 0.25 * h * h * stiffness[j]).collect();
-        let mut system = impulses.system(middle, &theta, h, &diagonal, Choice::Near(sliding))?;
+        let mut next = state.theta.clone();
+        straight(model, &mut next, &state.dtheta, h);
+        let mut system =
+            impulses.system(middle, &theta, [&state.theta, &state.dtheta, &next], h, &diagonal, sliding)?;
         let before = impulses.relative_at(&system, state.t, &state.theta, &state.dtheta);
         let mut p = impulses.guess(&system, h);
         let (mut v_m, mut force) = (v.clone(), vec![0.0; n]);
         let (mut after, mut last, mut solved, mut given) = (v.clone(), v.clone(), None, 0.0);
         let mut to = Phase { t: end, ..state.clone() };
-        for _ in 0..PASSES {
+        let (mut change, mut settles) = (f64::INFINITY, true);
+        for pass in 0..PASSES {
+            let start = after.clone();
             let rates = frame_rates(model, &v_m);
             given = equation.smooth_force(middle, &theta, &v_m, &rates, &mut force)?;
             for j in 0..n {
@@ -185,12 +244,20 @@ impl Moreau {
             }
             last.copy_from_slice(&v_m);
             (0..n).for_each(|j| v_m[j] = 0.5 * (v[j] + after[j]));
+            let before = core::mem::replace(&mut change, apart(&start, &after));
+            if pass > 0 && change <= SETTLED {
+                break;
+            }
+            settles = pass == 0 || change <= UNSETTLED || change < 0.5 * before && pass + 1 < PASSES;
+            if !settles && pass > 1 {
+                break;
+            }
         }
         equation.check_velocities(middle, &after)?;
         end_of(model, state, &v, &after, h, &mut to);
-        let solved = solved.unwrap_or(Solved { u: before.clone(), p, residual: 0.0 });
+        let solved = solved.unwrap_or_else(Solved::none);
         // works at the mean velocity
-        let [lost, moved] = solved.works(&system, &before);
+        let [lost, moved] = solved.works(&system, &v, &after);
         let mut works = [0.0, lost + h * equation.smooth_friction_power(&v_m), moved + h * given];
         let [gain_stiffness, gain_damping] = &self.gains;
         for j in 0..n {
@@ -201,8 +268,19 @@ impl Moreau {
         }
         sliding.iter().for_each(|&j| works[1] += h * model.friction[j] * v[j].signum() * v_m[j]);
         (0..3).for_each(|k| to.works[k] += works[k]);
-        Ok(Trial { h, system, solved, to })
+        Ok(Trial { h, system, solved, to, settles })
     }
+}
+
+/// Would a shorter step help?
+fn is_too_long(error: &Error) -> bool {
+    matches!(error, Error::Opened { .. } | Error::Diverged { .. })
+}
+
+/// The largest difference, relative to 1 + the largest number.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let size = b.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
 }
 
 /// x ← v + change.
@@ -274,11 +352,18 @@ fn end_of(model: &Model, state: &Phase, v: &[f64], after: &[f64], h: f64, to: &m
     }
 }
 
-/// The joints with dry friction that move at the start and are at rest, or move back, at the end.
+/// The joints with dry friction that move at the start and are at rest, or move back, at the end, but for those that a
+/// stop brings to rest.
 fn stopping(trial: &Trial, state: &Phase) -> Vec<usize> {
     let mut found = Vec::new();
     for &(key, first, law) in &trial.system.rows {
         let (Key::Dry(j), Law::Dry { most }) = (key, law) else { continue };
+        let stops = |&(key, row, _): &(Key, usize, Law)| {
+            matches!(key, Key::Stop(..)) && trial.solved.p[row] > 0.0 && trial.system.J[(row, j)] != 0.0
+        };
+        if trial.system.rows.iter().any(stops) {
+            continue;
+        }
         let rests = trial.solved.p[first].abs() < most;
         if state.dtheta[j].abs() > AT_REST && (rests || trial.to.dtheta[j] * state.dtheta[j] < 0.0) {
             found.push(j);

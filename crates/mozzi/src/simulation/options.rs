@@ -27,7 +27,8 @@ pub struct Options {
     /// Coulomb friction as in the model.
     pub friction: Friction,
     /// How to treat position limits; by default they are reported. If they are respected, a joint comes to rest at its
-    /// limit, inelastically, and is held as long as it is pressed against its stop.
+    /// limit, inelastically, and is held as long as it is pressed against its stop; a smooth method ends with
+    /// [`Error::StopActs`] there.
     pub joint_limits: Policy,
 }
 

@@ -147,7 +147,7 @@ impl<'a> Simulation<'a> {
         let mut course = Course::new(self, model, [theta, dtheta], &mut input, recorder)?;
         course.run(&mut progress)?;
         course.ending.closing = course.driven.closing();
-        course.ending.one_sided = course.account();
+        course.ending.one_sided = course.impulses.as_ref().map(|impulses| impulses.account);
         course.ending.stops = course.stops.noted();
         Ok(course.ending)
     }

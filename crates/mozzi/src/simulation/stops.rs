@@ -1,12 +1,10 @@
 //! Stops: the joints' position limits along a motion.
 
-use super::Policy;
 use super::dense::Dense;
-use super::driven::Driven;
 use super::events::{Direction, first_zero, parts};
-use super::held::Held;
 use super::options::check;
 use super::state::State;
+use super::{Method, Policy};
 use crate::model::{Bounds, Error, Freedom, Model, Place};
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -85,8 +83,8 @@ impl Stops {
         all
     }
 
-    /// Are joints stopped at the times at which they reach their limits?
-    pub fn are_located(&self) -> bool {
+    /// Do limits act that the method has no stops for?
+    pub fn are_missed(&self) -> bool {
         self.policy == Policy::Respect && !self.by_impulses
     }
 
@@ -136,64 +134,26 @@ impl Stops {
         }
     }
 
-    /// The first time within the step, up to `until`, at which a joint that is not held reaches a stop.
-    pub fn first_impact(&self, model: &Model, dense: &Dense, until: f64, held: &[Held]) -> Option<(f64, usize, usize)> {
+    /// The first time within the step, up to `until`, at which a joint would go beyond its limit, with joint and side.
+    fn first_impact(&self, model: &Model, dense: &Dense, until: f64) -> Option<(f64, usize, usize)> {
         let parts = parts(model, dense, until);
         let from = &parts[0].theta;
-        let free = self.sides.iter().copied().filter(|&(k, _)| !is_held(self.bounds.places[k], held));
-        let impacts = free.filter_map(|(k, side)| {
+        let impacts = self.sides.iter().filter_map(|&(k, side)| {
             let excess = |state: &State| self.excess_from(from, &state.theta, k, side);
-            first_zero(model, dense, &parts, Direction::Rising, excess).map(|t| (t, k, side))
+            let rounding = 1e-12;
+            // from the limit itself there is no zero to be found
+            let leaves = excess(&parts[0]) >= 0.0 && parts[1..].iter().any(|part| excess(part) > rounding);
+            let t = if leaves { Some(dense.t) } else { first_zero(model, dense, &parts, Direction::Rising, excess) };
+            t.map(|t| (t, k, side))
         });
         impacts.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The time within the step, after its beginning, from which a stop would have to pull; by bisection.
-    pub fn first_release(&self, dense: &Dense, until: &State, driven: &mut Driven) -> Result<Option<f64>, Error> {
-        if driven.pull(until)? <= 0.0 {
-            return Ok(None);
-        }
-        let (mut a, mut b) = (dense.t, until.t);
-        while b - a > 1e-14 * b.max(1e-3) && (a + b) * 0.5 > a && (a + b) * 0.5 < b {
-            let middle = 0.5 * (a + b);
-            *(if driven.pull(&dense.at(driven.model, middle))? > 0.0 { &mut b } else { &mut a }) = middle;
-        }
-        Ok(Some(b))
-    }
-
-    /// Stops the joints at a limit that move towards it, or are at rest and accelerate towards it: those that start
-    /// there, those that arrive there at the same time as another, those that another stop releases.
-    pub fn stop_at_limits(&mut self, state: &mut State, driven: &mut Driven) -> Result<(), Error> {
-        for i in 0..self.sides.len() {
-            let (k, side) = self.sides[i];
-            let held = Held::new(&self.bounds, k, side);
-            let rounding = if held.place.freedom == Freedom::Ball { 1e-12 } else { 0.0 };
-            let is_there = self.excess(&state.theta, k, side) >= -rounding && !is_held(held.place, &driven.held);
-            if is_there && held.along(&state.theta, &state.dtheta) * held.side >= 0.0 {
-                self.stop(state, k, side, driven)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Brings the joint to rest at its limit, without a rebound, together with all joints held at stops; the energy
-    /// lost in the impact is counted as friction.
-    pub fn stop(&mut self, state: &mut State, k: usize, side: usize, driven: &mut Driven) -> Result<(), Error> {
-        let held = Held::new(&self.bounds, k, side);
-        held.project(&mut state.theta);
-        let comes = held.along(&state.theta, &state.dtheta) * held.side > 0.0;
-        let before = driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
-        driven.held.push(held);
-        driven.factor(&state.theta)?;
-        driven.let_go(&state.theta, None, &state.dtheta.clone());
-        driven.bring_to_rest(&state.theta, None, &mut state.dtheta);
-        state.works[1] += before - driven.energy(&state.theta, &state.dtheta, state.works).kinetic;
-        driven.complete(state)?;
-        driven.release(state)?;
-        if comes || is_held(held.place, &driven.held) {
-            self.note(state.t, k, side, 0.0, true);
-        }
-        Ok(())
+    /// For a smooth method, which has no stops: the time within the step at which one would act, and the error.
+    pub fn acts(&self, model: &Model, dense: &Dense, until: f64, method: Method) -> Option<(f64, Error)> {
+        let (time, k, side) = self.first_impact(model, dense, until)?;
+        let (joint, limit) = (self.names[k].clone(), self.bounds.joints[k][side]);
+        Some((time, Error::StopActs { joint, limit, time, method: method.name() }))
     }
 }
 
@@ -205,8 +165,4 @@ pub(super) fn sides(bounds: &Bounds) -> Vec<(usize, usize)> {
         limit.is_finite() && !(is_ball && (side == 0 || limit >= PI))
     };
     all.filter(is_reachable).collect()
-}
-
-fn is_held(place: Place, held: &[Held]) -> bool {
-    held.iter().any(|held| held.place == place)
 }

@@ -1,13 +1,14 @@
 //! Joints with dry friction.
 
-use super::robots::{FIXED, block, by, pendulum, run};
+use super::robots::{block, by, pendulum, run};
 use mozzi::simulation::{Method, Options};
 use mozzi::testing;
 
 #[test]
 fn a_held_pendulum_does_not_move() {
     // gravity's moment at 0.5 rad is 4.70 N m
-    for method in FIXED {
+    {
+        let method = Method::MoreauJean;
         for step in [1e-2, 4e-3, 1e-3] {
             let run = run(&pendulum(6.0), &[0.5], &[0.0], by(method, 10.0, step));
             let moved = run.motion.theta.iter().map(|x| (x - 0.5).abs()).fold(0.0, f64::max);
@@ -34,14 +35,7 @@ fn the_automatic_method_follows_the_robot() {
 fn a_block_slides_to_rest() {
     let (speed, model) = (1.50123, block(2.0, 0.0, 5.0, None));
     let expected = speed * speed / 5.0;
-    for (method, step, bound) in [
-        (Method::MoreauJean, 1e-2, 1e-12),
-        (Method::MoreauJean, 1e-3, 1e-12),
-        (Method::RungeKutta4, 1e-3, 1e-6),
-        (Method::Midpoint, 1e-3, 1e-6),
-        (Method::SemiImplicitEuler, 1e-3, 2e-3),
-        (Method::Euler, 1e-3, 2e-3),
-    ] {
+    for (method, step, bound) in [(Method::MoreauJean, 1e-2, 1e-12), (Method::MoreauJean, 1e-3, 1e-12)] {
         let run = run(&model, &[0.0], &[speed], by(method, 1.0, step));
         let last = run.motion.last();
         let lost = last.energy.friction_loss - speed * speed;
@@ -60,9 +54,7 @@ fn a_block_slides_to_rest() {
 fn a_spring_with_dry_friction_loses_the_same_each_half_cycle() {
     // peaks fall by 2μ/k = 0.04 m a half cycle of π/10 s, until |kx| ≤ μ at 25 half cycles
     let (k, mu) = (100.0, 2.0);
-    for (method, step, bound) in
-        [(Method::MoreauJean, 4e-3, 1e-12), (Method::MoreauJean, 1e-3, 1e-12), (Method::RungeKutta4, 1e-3, 2e-5)]
-    {
+    for (method, step, bound) in [(Method::MoreauJean, 4e-3, 1e-12), (Method::MoreauJean, 1e-3, 1e-12)] {
         let run = run(&block(1.0, k, mu, None), &[1.0], &[0.0], by(method, 12.0, step));
         // after each turn (x − c)² + ẋ²/ω² = (A − c)² with c = μ/k against the velocity
         let (mut worst, mut turns) = (0.0_f64, 0);

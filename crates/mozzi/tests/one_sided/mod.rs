@@ -5,7 +5,6 @@ mod balls;
 mod boxes;
 mod drops;
 mod dry_friction;
-mod events;
 mod pinocchio;
 mod robots;
 mod stops;

@@ -4,9 +4,6 @@ use mozzi::model::description::{Joint, JointKind};
 use mozzi::simulation::{Method, Options, Run, Simulation, Zero};
 use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 
-pub const FIXED: [Method; 5] =
-    [Method::MoreauJean, Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4, Method::Midpoint];
-
 pub fn hinge() -> JointKind {
     JointKind::Screw(ScrewAxis::new([0.0, -1.0, 0.0], [0.0; 3]).expect("unit"))
 }

@@ -1,14 +1,15 @@
 //! Stops as impulses, next to dry friction.
 
-use super::robots::{FIXED, block, by, run};
-use mozzi::simulation::{Method, Options, Policy, Simulation, torque};
+use super::robots::{block, by};
+use mozzi::simulation::{Friction, Method, Options, Policy, Simulation, Trajectory, Zero, torque};
 
 #[test]
 fn a_block_is_pushed_against_its_stop_and_pulled_away() {
     // 2 kg, friction 1 N, pushed by 5 N from 0 to a stop at 0.3 m, from 1 s on pulled by 3 N
     let model = block(2.0, 0.0, 1.0, Some([-1.0, 0.3]));
     let motor = || torque(|t, _, _, tau| tau[0] += if t < 1.0 { 5.0 } else { -3.0 });
-    for (method, bound) in FIXED.into_iter().zip([1e-3, 4e-3, 4e-3, 4e-3, 4e-3]) {
+    {
+        let (method, bound) = (Method::Automatic, 1e-3);
         let options = Options { joint_limits: Policy::Respect, ..by(method, 1.5, 1e-3) };
         let run = Simulation::new(options).run(&model, &[0.0], &[0.0], motor()).expect("a motion");
         let at = |t: f64| run.motion.sample((t * 1e3).round() as usize);
@@ -34,10 +35,47 @@ fn a_block_is_pushed_against_its_stop_and_pulled_away() {
 }
 
 #[test]
-fn stops_alone_are_still_located() {
-    let model = block(2.0, 0.0, 0.0, Some([-1.0, 0.3]));
-    let options = Options { joint_limits: Policy::Respect, ..by(Method::Automatic, 1.0, 1e-2) };
-    let run = run(&model, &[0.0], &[1.0], options);
-    assert!(run.method == Method::RungeKutta4 && run.one_sided.is_none());
-    assert!((run.stops[0].first - 0.3).abs() < 1e-12);
+fn smooth_methods_refuse_what_they_have_not() {
+    let smooth = [
+        Method::Euler,
+        Method::SemiImplicitEuler,
+        Method::RungeKutta4,
+        Method::Midpoint,
+        Method::DormandPrince { tolerance: 1e-9 },
+    ];
+    for method in smooth {
+        // a stop is an error when it acts, with the motion until then
+        let model = block(2.0, 0.0, 0.0, Some([-1.0, 0.3]));
+        let options = Options { joint_limits: Policy::Respect, ..by(method, 1.0, 1e-2) };
+        let mut rows = Trajectory::new(&model);
+        let go_on = |_| std::ops::ControlFlow::Continue(());
+        let error = Simulation::new(options).stream(&model, &[0.0], &[1.0], Zero, &mut rows, go_on);
+        let error = error.expect_err("a stop").to_string();
+        assert!(error.contains("`slide` reaches its limit 0.3 at t = 0.3") && error.contains("`moreau`"), "{error}");
+        assert_eq!(rows.len(), 30);
+        // dry friction at once
+        let model = block(2.0, 0.0, 1.0, None);
+        let error = Simulation::new(by(method, 1.0, 1e-2)).run(&model, &[0.0], &[1.0], Zero).expect_err("refused");
+        let error = error.to_string();
+        assert!(error.contains(method.name()) && error.contains("dry friction of `slide`"), "{error}");
+        let smooth = Friction::Smooth { slip_speed: 1e-2 };
+        let run = Simulation::new(Options { friction: smooth, ..by(method, 0.1, 1e-3) });
+        assert!(run.run(&model, &[0.0], &[1.0], Zero).expect("a motion").motion.complete);
+    }
+}
+
+#[test]
+fn limits_that_are_respected_make_the_method_moreaus() {
+    for (limits, policy, expected) in [
+        (Some([-1.0, 0.3]), Policy::Respect, Method::MoreauJean),
+        (Some([-1.0, 0.3]), Policy::Report, Method::RungeKutta4),
+        (None, Policy::Respect, Method::RungeKutta4),
+    ] {
+        let options = Options { joint_limits: policy, ..by(Method::Automatic, 1.0, 1e-3) };
+        let run = Simulation::new(options).run(&block(2.0, 0.0, 0.0, limits), &[0.0], &[1.0], Zero).expect("a motion");
+        assert_eq!(run.method, expected);
+        if expected == Method::MoreauJean {
+            assert!((run.stops[0].first - 0.3).abs() < 2e-3 && (run.motion.last().theta[0] - 0.3).abs() < 1e-12);
+        }
+    }
 }

@@ -233,10 +233,10 @@ fn a_four_bar_stops_at_the_limit_of_its_rocker() {
         assert!(rows.phi.amax() < 1e-9 && speed < 1e-9, "{} {speed} at {}", rows.phi.amax(), sample.t);
         assert!((sample.theta[2] - theta[2]).abs() < 0.1 + 1e-9);
         let now = sample.energy.kinetic + sample.energy.potential;
-        assert!(now < energy + 1e-7, "{now} {energy}");
+        assert!(now < energy + 1e-4, "{now} {energy}");
         energy = now;
     }
-    assert!(run.motion.largest_drift() < 1e-6, "{}", run.motion.largest_drift());
+    assert!(run.motion.largest_drift() < 1e-4, "{}", run.motion.largest_drift());
 }
 
 #[test]

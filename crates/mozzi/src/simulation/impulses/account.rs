@@ -14,8 +14,13 @@ pub struct OneSidedAccount {
     pub last_residual: f64,
     /// Steps whose residual is above 10⁻⁶: their problem may have no solution.
     pub unsolved: usize,
-    /// Steps of Moreau and Jean's method that an adaptive method took across events that it could not separate.
-    pub steps_across: usize,
+    /// How often a step was halved, because its iteration did not contract, or a loop did not close.
+    pub halvings: usize,
+    /// Steps of the shortest length whose iteration did not contract; they count.
+    pub unsettled: usize,
+    /// The energy by which positions were lifted, or lowered, onto the planes and limits that they touch, J. It is part
+    /// of what the contacts dissipate.
+    pub lifted: f64,
     /// The largest number of rows.
     pub most_rows: usize,
     /// Newton steps, Gauss-Seidel sweeps and iterations of the last method, in all solutions.

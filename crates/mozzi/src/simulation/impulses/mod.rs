@@ -1,57 +1,54 @@
 //! One-sided forces within a step of a simulation: their rows, their solution, and what is remembered of them.
 
 mod account;
+mod near;
 mod position;
 mod rows;
 
 pub use account::OneSidedAccount;
-pub(super) use rows::{Choice, Key, System};
+pub(super) use rows::{Key, System};
 
 use super::contact::{Contacts, Surface};
 use super::factored_mass::FactoredMass;
 use super::{Friction, Options, Policy};
-use crate::kinematics::forward_kinematics;
-use crate::lie::SE3;
 use crate::linalg::Vec3;
-use crate::model::{Bounds, Error, FrameId, Model};
+use crate::model::{Bounds, Error, Model};
 use crate::one_sided::{Law, Problem, solve};
+use crate::scalar::Scalar;
 use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
+use near::Cloud;
 
-/// The residual that is sought, relative to 1 + |b|.
+/// The residual that is sought, relative to the largest of the velocities b, or to this.
 const TOLERANCE: f64 = 1e-12;
+const LEAST: f64 = 1e-4;
 /// A residual above this is reported as unsolved, m/s.
 const UNSOLVED: f64 = 1e-6;
-/// Repeated solutions in which the friction of more blocks is taken at the middle of the step.
+/// Repeated solutions in which the friction of more contacts is taken at the middle of the step.
 const SHIFTS: usize = 4;
-/// Energy that friction may give by rounding, J.
-const GAINS: f64 = 1e-16;
 /// Contacts nearer than this act at least, m: rounding of positions.
 const NEAR: f64 = 1e-8;
+/// An impact rebounds if it is faster than this many times what the contact gains in the step without contact forces: a
+/// loaded foot would else jump for ever.
+const REBOUND: f64 = 4.0;
+/// What stuck slides above this speed, and what slid sticks below the other, m/s: for events.
+const SLIDES: f64 = 1e-6;
+const STICKS: f64 = 1e-9;
 
 /// The one-sided forces of a robot along a motion.
 pub(super) struct Impulses<'r> {
     pub model: &'r Model,
     pub contacts: &'r Contacts<'r>,
+    clouds: Vec<Cloud>,
     /// The limits that act as stops, joint and side.
     stops: Option<(Bounds, Vec<(usize, usize)>)>,
     /// The velocities with dry friction.
     pub dry: Vec<usize>,
-    frames: Vec<FrameId>,
     /// Contacts at most this far act, m.
-    pub reach: f64,
-    /// Slower impacts do not rebound, m/s.
-    pub slowest: f64,
-    /// The forces of the last step, in the order of their keys.
-    warm: Vec<(Key, [f64; 3])>,
-    /// Where sticking contact points touch: in the coordinates of the plane.
-    anchors: BTreeMap<(usize, usize), Vec3>,
-    /// The contacts and stops that carried in the last step, and whether they stick.
-    pub carrying: Vec<(Key, bool)>,
-    /// Joints and sides of stops that were struck and not reported yet.
-    pub struck: Vec<(usize, usize)>,
+    reach: f64,
+    pub memory: Memory,
     pub account: OneSidedAccount,
     /// The force that each pair of a point and a plane applies to the plane, in {s}: three numbers each, N.
     pub forces: Vec<f64>,
@@ -59,33 +56,70 @@ pub(super) struct Impulses<'r> {
     pub mass: FactoredMass<'r>,
 }
 
+/// What one step leaves to the next.
+#[derive(Clone, Default)]
+pub(super) struct Memory {
+    /// The forces of the last step, in the order of their keys.
+    warm: Vec<(Key, [f64; 3])>,
+    /// Where sticking contact points touch: in the coordinates of the plane.
+    anchors: BTreeMap<(usize, usize), Vec3>,
+    /// The gaps of contacts that rebounded within the step, m.
+    rebounds: BTreeMap<(usize, usize), f64>,
+    /// How far points that came to rest within the step would have to go back, along t₁ and t₂.
+    stopped: BTreeMap<(usize, usize), [f64; 2]>,
+    /// The contacts and stops that carried in the last step, and whether they stick.
+    pub carrying: Vec<(Key, bool)>,
+    /// The contacts and stops that carried since they were near, and whether they stick.
+    pub touching: Vec<(Key, bool)>,
+    /// Joints and sides of stops that were struck and not reported yet.
+    pub struck: Vec<(usize, usize)>,
+}
+
+impl Memory {
+    /// The forces alone.
+    pub fn guess(self) -> Self {
+        Memory { warm: self.warm, ..Memory::default() }
+    }
+}
+
 /// Impulses of a system.
 pub(super) struct Solved {
     pub p: DVector<f64>,
+    /// The velocities of the surroundings before the step, at its end without impulses (none if there are none), and at
+    /// its end.
+    pub before: DVector<f64>,
+    pub free: DVector<f64>,
     pub u: DVector<f64>,
     pub residual: f64,
 }
 
-/// Is the friction of a block opposite to the mean of its velocities before and after the step? So it is for what
-/// slides throughout (second order instead of first), and for what would gain energy otherwise. Only the direction of
-/// u_t counts for sliding friction, so the mean's law is that of b_t + u_t.
-fn is_at_middle(law: Law, first: usize, p: &DVector<f64>, before: &DVector<f64>, after: &DVector<f64>) -> bool {
-    let rows = law.tangential(first);
-    let sum = |f: &dyn Fn(usize) -> f64| rows.clone().map(f).sum::<f64>();
-    if sum(&|r| p[r] * (before[r] + after[r])) > GAINS {
-        return true;
-    }
+/// Does a contact slide at both ends of a step, in about the same direction? Its friction is then opposite to the mean
+/// of its velocities, which is of second order; only the direction counts, so the mean's law is that of b_t + u_t.
+fn slides_throughout(law: Law, first: usize, p: &DVector<f64>, before: &DVector<f64>, after: &DVector<f64>) -> bool {
     let Law::Contact { .. } = law else { return false };
-    let squares = sum(&|r| before[r] * before[r]) * sum(&|r| after[r] * after[r]);
-    let along = sum(&|r| before[r] * after[r]);
+    let product = |a: &DVector<f64>, b: &DVector<f64>| a[first + 1] * b[first + 1] + a[first + 2] * b[first + 2];
+    let (squares, along) = (product(before, before) * product(after, after), product(before, after));
     p[first] > 0.0 && squares > 1e-32 && along > 0.0 && along * along > 0.25 * squares
 }
 
+/// ‖u_t‖ of a contact.
+fn slip(u: &DVector<f64>, first: usize) -> f64 {
+    let (x, y) = (u[first + 1], u[first + 2]);
+    Scalar::sqrt(x * x + y * y)
+}
+
 impl Solved {
-    /// The energy that the impulses dissipate and that they give to moving planes, from the velocities of the
-    /// surroundings before and after the step.
-    pub fn works(&self, system: &System, before: &DVector<f64>) -> [f64; 2] {
-        [-0.5 * self.p.dot(&(before + &self.u)), self.p.dot(&system.w)]
+    /// Of a system without rows.
+    pub fn none() -> Self {
+        let none = || DVector::zeros(0);
+        Solved { p: none(), before: none(), free: none(), u: none(), residual: 0.0 }
+    }
+
+    /// The energy that the impulses dissipate and that they give to moving planes, from the velocities before and after
+    /// the step in the axes of its middle, where p acts.
+    pub fn works(&self, system: &System, before: &[f64], after: &[f64]) -> [f64; 2] {
+        let twice = system.relative(before) + system.relative(after);
+        [-0.5 * self.p.dot(&twice), self.p.dot(&system.w)]
     }
 
     /// Is p inside its cone, so that the contact sticks?
@@ -99,7 +133,7 @@ impl Solved {
 }
 
 impl<'r> Impulses<'r> {
-    /// None if nothing one-sided acts and `is_forced` is false. Stops are included if there is anything else.
+    /// None if nothing one-sided acts and `is_forced` is false.
     pub fn new(
         model: &'r Model,
         contacts: &'r Contacts<'r>,
@@ -109,30 +143,24 @@ impl<'r> Impulses<'r> {
         contacts.check(model)?;
         let is_dry = options.friction == Friction::Coulomb;
         let dry: Vec<usize> = (0..model.n()).filter(|&j| is_dry && model.friction[j] > 0.0).collect();
-        if dry.is_empty() && contacts.is_empty() && !is_forced {
-            return Ok(None);
-        }
         let bounds = Bounds::of(model);
         let stops = (options.joint_limits == Policy::Respect).then(|| {
             let sides = super::stops::sides(&bounds);
             (bounds, sides)
         });
-        let mut frames: Vec<FrameId> = contacts.points.iter().map(|point| point.frame).collect();
-        frames.sort_unstable();
-        frames.dedup();
+        let has_stops = stops.as_ref().is_some_and(|(_, sides)| !sides.is_empty());
+        if dry.is_empty() && contacts.is_empty() && !has_stops && !is_forced {
+            return Ok(None);
+        }
         let (h, g) = (options.step(), options.gravity.unwrap_or(model.gravity()).norm());
         Ok(Some(Impulses {
             model,
             contacts,
+            clouds: Cloud::all(contacts),
             stops,
             dry,
-            frames,
             reach: (g * h * h).max(NEAR),
-            slowest: 0.0,
-            warm: Vec::new(),
-            anchors: BTreeMap::new(),
-            carrying: Vec::new(),
-            struck: Vec::new(),
+            memory: Memory::default(),
             account: OneSidedAccount::default(),
             forces: vec![0.0; 3 * contacts.pairs()],
             mass: FactoredMass::new(model),
@@ -150,8 +178,8 @@ impl<'r> Impulses<'r> {
     pub fn guess(&self, system: &System, h: f64) -> DVector<f64> {
         let mut p = DVector::zeros(system.laws.iter().map(|law| law.rows()).sum());
         for &(key, first, law) in &system.rows {
-            if let Ok(known) = self.warm.binary_search_by_key(&key, |(key, _)| *key) {
-                (0..law.rows()).for_each(|k| p[first + k] = h * self.warm[known].1[k]);
+            if let Ok(known) = self.memory.warm.binary_search_by_key(&key, |(key, _)| *key) {
+                (0..law.rows()).for_each(|k| p[first + k] = h * self.memory.warm[known].1[k]);
             }
         }
         p
@@ -161,14 +189,15 @@ impl<'r> Impulses<'r> {
     pub fn solve(
         &mut self,
         system: &mut System,
-        mut b: DVector<f64>,
+        free: DVector<f64>,
         before: &DVector<f64>,
         guess: &DVector<f64>,
     ) -> Solved {
-        let original = b.clone();
+        let mut b = free.clone();
         for &(key, first, _) in &system.rows {
+            let gain = (before[first] - free[first]).max(0.0);
             match key {
-                Key::Contact(point, _) if before[first] < -self.slowest => {
+                Key::Contact(point, _) if -before[first] > REBOUND * gain => {
                     b[first] += self.contacts.points[point].restitution * before[first];
                 }
                 // what opens at first must not be pushed: its mean velocity stays positive
@@ -176,17 +205,17 @@ impl<'r> Impulses<'r> {
                 _ => {}
             }
         }
-        let tolerance = TOLERANCE * (1.0 + b.amax());
+        let tolerance = TOLERANCE * b.amax().max(LEAST);
         let G = core::mem::replace(&mut system.G, DMatrix::zeros(0, 0));
         let mut problem = Problem { G, b, laws: core::mem::take(&mut system.laws) };
         let mut found = solve(&problem, guess, tolerance);
         self.account.add(&found);
         let mut shifted = vec![false; system.rows.len()];
         for _ in 0..SHIFTS {
-            let u = &problem.G * &found.p + &original;
+            let u = &problem.G * &found.p + &free;
             let mut changes = false;
             for (row, &(_, first, law)) in system.rows.iter().enumerate() {
-                if !shifted[row] && is_at_middle(law, first, &found.p, before, &u) {
+                if !shifted[row] && slides_throughout(law, first, &found.p, before, &u) {
                     for r in law.tangential(first) {
                         problem.b[r] += before[r];
                     }
@@ -199,35 +228,101 @@ impl<'r> Impulses<'r> {
             found = solve(&problem, &found.p, tolerance);
             self.account.add(&found);
         }
-        let u = &problem.G * &found.p + original;
+        let u = &problem.G * &found.p + &free;
         (system.G, system.laws) = (problem.G, problem.laws);
-        Solved { p: found.p, u, residual: found.residual }
+        Solved { p: found.p, before: before.clone(), free, u, residual: found.residual }
     }
 
     /// Remembers the impulses of a step of h seconds that counts.
     pub fn keep(&mut self, system: &System, solved: &Solved, h: f64) {
         self.account.keep(solved.residual, solved.p.len());
-        let carried = core::mem::take(&mut self.carrying);
-        self.warm.clear();
+        let Memory { warm, carrying, touching, struck, .. } = &mut self.memory;
+        let touched = core::mem::take(touching);
+        carrying.clear();
+        warm.clear();
         self.forces.fill(0.0);
         for &(key, first, law) in &system.rows {
             let mut force = [0.0; 3];
             (0..law.rows()).for_each(|k| force[k] = solved.p[first + k] / h);
-            self.warm.push((key, force));
-            if force[0] > 0.0 && matches!(key, Key::Contact(..) | Key::Stop(..)) {
-                self.carrying.push((key, solved.sticks(system, first, law)));
-                if let (Key::Stop(k, side), true) = (key, carried.iter().all(|&(other, _)| other != key)) {
-                    self.struck.push((k, side));
+            warm.push((key, force));
+            let (carries, sticks) = (force[0] > 0.0, solved.sticks(system, first, law));
+            match key {
+                Key::Contact(..) => {
+                    let before = touched.iter().find(|(other, _)| *other == key).map(|&(_, sticks)| sticks);
+                    let speed = slip(&solved.u, first);
+                    touching.extend(match before {
+                        Some(true) => Some((key, !(carries && speed > SLIDES))),
+                        Some(false) => Some((key, carries && speed < STICKS)),
+                        None => carries.then_some((key, sticks)),
+                    });
                 }
+                Key::Stop(k, side) => {
+                    let touched = touched.iter().any(|&(other, _)| other == key);
+                    if carries && !touched {
+                        struck.push((k, side));
+                    }
+                    touching.extend((carries || touched).then_some((key, true)));
+                }
+                _ => {}
+            }
+            if carries && matches!(key, Key::Contact(..) | Key::Stop(..)) {
+                carrying.push((key, sticks));
             }
         }
-        self.warm.sort_unstable_by_key(|(key, _)| *key);
+        warm.sort_unstable_by_key(|(key, _)| *key);
+        self.note_rebounds(system, solved, h);
+        self.note_stopped(system, solved, h);
         self.set_forces(system, &(&solved.p / h));
+    }
+
+    /// Contacts that came, and go at the end of the step, touched within it: after t_c = gap/|u_n|, and are (h − t_c)u_n⁺
+    /// away at its end.
+    fn note_rebounds(&mut self, system: &System, solved: &Solved, h: f64) {
+        self.memory.rebounds.clear();
+        for &(key, first, _) in &system.rows {
+            let (Key::Contact(point, plane), Some(touch)) = (key, system.touches.iter().find(|(k, ..)| *k == key))
+            else {
+                continue;
+            };
+            let (comes, goes) = (solved.before[first], solved.u[first]);
+            if comes < 0.0 && goes > 0.0 && solved.p[first] > 0.0 {
+                let touches = ((touch.2 - 0.5 * h * comes) / -comes).clamp(0.0, h);
+                self.memory.rebounds.insert((point, plane), (h - touches) * goes);
+            }
+        }
+    }
+
+    /// Contacts that slid and stick at the end of the step move until they stop, after t_s = h|u_t|/(|u_t| − s), with s
+    /// their speed at its end under full friction: by ½ t_s u_t, not by ½ h u_t.
+    fn note_stopped(&mut self, system: &System, solved: &Solved, h: f64) {
+        let mut p = solved.p.clone();
+        let mut found = Vec::new();
+        for &(key, first, law) in &system.rows {
+            let (Key::Contact(point, plane), Law::Contact { mu }) = (key, law) else { continue };
+            let speed = slip(&solved.before, first);
+            if slip(&solved.u, first) > STICKS {
+                self.memory.stopped.remove(&(point, plane)); // since an earlier part of the step
+            }
+            if speed > 1e-14 && slip(&solved.u, first) < 1e-9 * speed && solved.sticks(system, first, law) {
+                found.push((first, (point, plane), speed));
+                (1..3).for_each(|k| p[first + k] = -mu * p[first] * solved.before[first + k] / speed);
+            }
+        }
+        if found.is_empty() {
+            return;
+        }
+        let u = &system.G * p + &solved.free;
+        for (first, pair, speed) in found {
+            let way = [1, 2].map(|k| solved.before[first + k]);
+            let end = (u[first + 1] * way[0] + u[first + 2] * way[1]) / speed;
+            let rests = if end < 0.0 { h * speed / (speed - end) } else { h };
+            self.memory.stopped.insert(pair, way.map(|u| 0.5 * (h - rests) * u));
+        }
     }
 
     /// The contact forces in {s}, from those along the rows.
     pub fn set_forces(&mut self, system: &System, force: &DVector<f64>) {
-        for &(key, axes) in &system.axes {
+        for &(key, axes, _) in &system.touches {
             let row = system.rows.iter().find(|(other, ..)| *other == key);
             let (Key::Contact(point, plane), Some(&(_, first, _))) = (key, row) else { continue };
             let total = axes[0] * force[first] + axes[1] * force[first + 1] + axes[2] * force[first + 2];
@@ -239,14 +334,5 @@ impl<'r> Impulses<'r> {
     /// The planes at a time.
     pub fn surfaces(&self, t: f64) -> Vec<Surface> {
         self.contacts.planes.iter().map(|plane| plane.at(t)).collect()
-    }
-
-    /// The configurations of the frames that carry contact points.
-    fn poses(&self, theta: &[f64]) -> Vec<SE3> {
-        self.frames.iter().map(|&frame| forward_kinematics(self.model, theta, frame)).collect()
-    }
-
-    fn pose_of(&self, poses: &[SE3], frame: FrameId) -> SE3 {
-        self.frames.binary_search(&frame).map_or(SE3::identity(), |k| poses[k])
     }
 }

@@ -6,7 +6,6 @@ use crate::constraints::constraint_jacobian;
 use crate::kinematics::integrate;
 use crate::linalg::Vec3;
 use crate::model::{Error, FrameId};
-use crate::one_sided::least_squares;
 use crate::simulation::contact::{PlaneMotion, Support, Touch};
 use alloc::collections::BTreeMap;
 use alloc::vec;
@@ -16,6 +15,10 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 /// Gaps below this are rounding, m.
 const CLOSED: f64 = 1e-13;
 const CORRECTIONS: usize = 3;
+/// Joints this near to a limit are at it, rad or m.
+const AT_LIMIT: f64 = 1e-11;
+/// What is added to the diagonal of G, relative to it: rows may be redundant.
+const REGULAR: f64 = 1e-10;
 
 /// A row whose position is to be put right.
 #[allow(clippy::large_enum_variant)] // a short list, made once a step
@@ -29,15 +32,17 @@ enum OpenRow {
 
 impl Impulses<'_> {
     /// θ ← θ ⊕ δ with the least δᵀMδ that brings the contacts and stops that carried in the last step to gap 0, from
-    /// either side, and sticking points back to their anchors. `h` is the length of the step.
-    pub fn correct(&mut self, t: f64, theta: &mut [f64], h: f64) -> Result<(), Error> {
-        if self.carrying.is_empty() {
-            self.anchors.clear();
-            return Ok(());
+    /// either side, and sticking points back to their anchors. `h` is the length of the step. Did θ change?
+    pub fn correct(&mut self, t: f64, theta: &mut [f64], h: f64) -> Result<bool, Error> {
+        let stopped = core::mem::take(&mut self.memory.stopped);
+        if self.memory.carrying.is_empty() {
+            self.memory.anchors.clear();
+            return Ok(false);
         }
         self.move_anchors(h);
+        self.set_anchors(t, theta, Some(&stopped));
         let n = self.model.n();
-        let (mut last, mut is_factored) = (f64::INFINITY, false);
+        let (mut last, mut is_factored, mut changes) = (f64::INFINITY, false, false);
         for _ in 0..CORRECTIONS {
             let (open, errors) = self.open_rows(t, theta);
             let size = errors.amax();
@@ -50,23 +55,37 @@ impl Impulses<'_> {
                 is_factored = true;
             }
             let J = self.jacobian(theta, open);
-            let Some(impulse) = least_squares(self.delassus(&J), errors) else { break };
-            let mut change = J.tr_mul(&impulse);
+            let mut G = self.delassus(&J);
+            (0..G.nrows()).for_each(|r| G[(r, r)] = G[(r, r)] * (1.0 + REGULAR) + f64::MIN_POSITIVE);
+            let Some(G) = G.cholesky() else { break };
+            let mut change = J.tr_mul(&G.solve(&errors));
             self.mass.divide(change.as_mut_slice());
             debug_assert!(change.len() == n);
             integrate(self.model, theta, change.as_slice(), 1.0);
+            changes = true;
         }
-        self.set_anchors(t, theta);
-        Ok(())
+        self.set_anchors(t, theta, None);
+        self.put_at_limits(theta);
+        Ok(changes)
+    }
+
+    /// Joints that are at their limits to rounding are there exactly.
+    fn put_at_limits(&self, theta: &mut [f64]) {
+        let Some((bounds, _)) = &self.stops else { return };
+        for &(key, _) in &self.memory.carrying {
+            let Key::Stop(k, side) = key else { continue };
+            if self.room(theta, k, side).abs() < AT_LIMIT {
+                bounds.places[k].put_at_limit(theta, bounds.joints[k][side]);
+            }
+        }
     }
 
     /// Rows of the contacts, stops and constraints that hold, and how far to move along them.
     fn open_rows(&mut self, t: f64, theta: &[f64]) -> (Vec<OpenRow>, DVector<f64>) {
         let (model, n) = (self.model, self.model.n());
         let (mut rows, mut errors) = (Vec::new(), Vec::new());
-        let touches = self.touches(t, theta);
         let surfaces = self.surfaces(t);
-        for &(key, sticks) in &self.carrying {
+        for &(key, sticks) in &self.memory.carrying {
             match key {
                 Key::Stop(k, side) => {
                     rows.push(OpenRow::Stop(k, side));
@@ -74,10 +93,11 @@ impl Impulses<'_> {
                 }
                 Key::Contact(point, plane) => {
                     let frame = self.contacts.points[point].frame;
-                    let (.., touch) = touches[point * self.contacts.planes.len() + plane];
+                    let touch = self.touch(theta, point, &surfaces[plane]);
                     rows.push(OpenRow::Point(frame, touch, 0));
-                    errors.push(touch.gap);
-                    let Some(anchor) = self.anchors.get(&(point, plane)).filter(|_| sticks) else { continue };
+                    errors.push(touch.gap - self.memory.rebounds.get(&(point, plane)).unwrap_or(&0.0));
+                    let anchor = self.memory.anchors.get(&(point, plane));
+                    let Some(anchor) = anchor.filter(|_| sticks) else { continue };
                     let way = surfaces[plane].T * *anchor - touch.at;
                     for axis in 1..3 {
                         rows.push(OpenRow::Point(frame, touch, axis));
@@ -113,26 +133,33 @@ impl Impulses<'_> {
 
     /// The anchors on belts move with them.
     fn move_anchors(&mut self, h: f64) {
-        for (&(_, plane), anchor) in &mut self.anchors {
+        for (&(_, plane), anchor) in &mut self.memory.anchors {
             if let PlaneMotion::Belt(T, v) = &self.contacts.planes[plane].motion {
                 *anchor += T.R.inverse_mul(*v) * h;
             }
         }
     }
 
-    /// Keeps the anchors of the points that stick, and sets those of points that begin to. A sphere or a disc has none:
-    /// it rolls.
-    fn set_anchors(&mut self, t: f64, theta: &[f64]) {
-        let (touches, surfaces) = (self.touches(t, theta), self.surfaces(t));
+    /// Keeps the anchors of the points that stick, and sets those of points that begin to: where they are, or, of the
+    /// `only` ones that came to rest within the step, by how far they are beyond where they did. A sphere or a disc has
+    /// none: it rolls.
+    fn set_anchors(&mut self, t: f64, theta: &[f64], only: Option<&BTreeMap<(usize, usize), [f64; 2]>>) {
+        let surfaces = self.surfaces(t);
         let mut kept: BTreeMap<(usize, usize), Vec3> = BTreeMap::new();
-        for &(key, sticks) in &self.carrying {
+        for &(key, sticks) in &self.memory.carrying {
             let Key::Contact(point, plane) = key else { continue };
-            if sticks && self.contacts.points[point].support == Support::Point {
-                let (.., touch) = touches[point * self.contacts.planes.len() + plane];
-                let here = surfaces[plane].T.inverse() * touch.at;
-                kept.insert((point, plane), self.anchors.get(&(point, plane)).copied().unwrap_or(here));
+            if !sticks || self.contacts.points[point].support != Support::Point {
+                continue;
             }
+            let pair = (point, plane);
+            let known = self.memory.anchors.get(&pair).copied();
+            let here = || surfaces[plane].T.inverse() * self.touch(theta, point, &surfaces[plane]).at;
+            let anchor = match only {
+                None => known.or_else(|| Some(here())),
+                Some(stopped) => known.or_else(|| stopped.get(&pair).map(|&[x, y]| here() + Vec3([x, y, 0.0]))),
+            };
+            kept.extend(anchor.map(|anchor| (pair, anchor)));
         }
-        self.anchors = kept;
+        self.memory.anchors = kept;
     }
 }

@@ -6,7 +6,7 @@ use crate::kinematics::{body_jacobian, forward_kinematics, twist_of};
 use crate::linalg::Vec3;
 use crate::model::{Error, FrameId, Freedom};
 use crate::one_sided::Law;
-use crate::simulation::contact::Touch;
+use crate::simulation::contact::{Surface, Touch};
 use crate::simulation::factored_mass::Support;
 use crate::spatial::Twist;
 use alloc::vec;
@@ -26,25 +26,6 @@ pub(in crate::simulation) enum Key {
     Contact(usize, usize),
 }
 
-/// Which rows a system has.
-#[derive(Clone, Copy)]
-pub(in crate::simulation) enum Choice<'a> {
-    /// Those of everything near, and of the joints with dry friction that are not listed.
-    Near(&'a [usize]),
-    /// Those of the listed keys.
-    Only(&'a [Key]),
-}
-
-impl Choice<'_> {
-    fn has(&self, key: Key, is_near: bool) -> bool {
-        match (self, key) {
-            (Choice::Near(sliding), Key::Dry(j)) => !sliding.contains(&j),
-            (Choice::Near(_), _) => is_near,
-            (Choice::Only(keys), _) => keys.contains(&key),
-        }
-    }
-}
-
 /// J, G and the laws at the middle of a step.
 pub(in crate::simulation) struct System {
     /// The blocks: what they belong to, their first row, and their law.
@@ -56,8 +37,8 @@ pub(in crate::simulation) struct System {
     pub w: DVector<f64>,
     /// J M⁻¹Jᵀ
     pub G: DMatrix<f64>,
-    /// n, t₁ and t₂ of the contacts.
-    pub axes: Vec<(Key, [Vec3; 3])>,
+    /// n, t₁ and t₂ of the contacts, and their gaps.
+    pub touches: Vec<(Key, [Vec3; 3], f64)>,
 }
 
 impl System {
@@ -91,12 +72,10 @@ impl Impulses<'_> {
                     u[first] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
                 }
                 Key::Contact(point, plane) => {
-                    let of = &self.contacts.points[point];
-                    self.columns(theta, of.frame, &mut columns);
-                    let T = forward_kinematics(model, theta, of.frame);
-                    let touch = of.touch(T, &surfaces[plane]);
+                    self.columns(theta, self.contacts.points[point].frame, &mut columns);
+                    let touch = self.touch(theta, point, &surfaces[plane]);
                     let V = twist_of(&columns.1, dtheta);
-                    let v = T.R * (V.v + V.w.cross(touch.of_frame));
+                    let v = touch.R * (V.v + V.w.cross(touch.of_frame));
                     for k in 0..3 {
                         u[first + k] = touch.speeds[k] - touch.axes[k].dot(v);
                     }
@@ -106,14 +85,23 @@ impl Impulses<'_> {
         u
     }
 
-    /// The rows at (t, θ) of a step of h seconds, with `diagonal` added to the diagonal of M, which stays factored.
-    pub fn system(&mut self, t: f64, theta: &[f64], h: f64, diagonal: &[f64], choice: Choice) -> Result<System, Error> {
+    /// The rows of a step of h seconds with the middle (t, θ), for the joints with dry friction that are not `sliding` and
+    /// for what is near, on the way from the start (θ, θ̇) to the next θ without impulses. `diagonal` is added to the diagonal of M, which stays
+    /// factored.
+    pub fn system(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        [start, dtheta, next]: [&[f64]; 3],
+        h: f64,
+        diagonal: &[f64],
+        sliding: &[usize],
+    ) -> Result<System, Error> {
         let (model, n) = (self.model, self.model.n());
         let m = model.constraint_rows();
         let expected = m + self.dry.len();
         let mut rows: Vec<f64> = Vec::with_capacity(expected * n);
-        let (mut w, mut blocks, mut all_axes) =
-            (Vec::with_capacity(expected), Vec::with_capacity(expected), Vec::new());
+        let (mut w, mut blocks, mut touches) = (Vec::with_capacity(expected), Vec::with_capacity(expected), Vec::new());
         if m > 0 {
             let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
             constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut []);
@@ -124,24 +112,23 @@ impl Impulses<'_> {
             }
         }
         for &(k, side) in self.sides() {
-            if !choice.has(Key::Stop(k, side), self.room(theta, k, side) <= super::NEAR) {
+            // along the limit's own gradient: a ball may come past the half turn in a step
+            let rate: f64 = self.stop_row(start, k, side).iter().zip(dtheta).map(|(a, rate)| a * rate).sum();
+            if self.room(start, k, side) - h * rate.max(0.0) > super::NEAR {
                 continue;
             }
             blocks.push((Key::Stop(k, side), w.len(), Law::Stop));
             rows.extend(self.stop_row(theta, k, side).iter());
             w.push(0.0);
         }
-        for &j in self.dry.iter().filter(|&&j| choice.has(Key::Dry(j), true)) {
+        for &j in self.dry.iter().filter(|j| !sliding.contains(j)) {
             blocks.push((Key::Dry(j), w.len(), Law::Dry { most: h * model.friction[j] }));
             rows.extend((0..n).map(|k| if k == j { 1.0 } else { 0.0 }));
             w.push(0.0);
         }
         let mut columns = (None, Vec::new());
-        for (point, plane, touch) in self.touches(t, theta) {
+        for (point, plane, touch) in self.near([t, t + 0.5 * h], theta, next) {
             let key = Key::Contact(point, plane);
-            if !choice.has(key, touch.gap <= self.reach) {
-                continue;
-            }
             let of = &self.contacts.points[point];
             blocks.push((key, w.len(), Law::Contact { mu: of.mu }));
             self.columns(theta, of.frame, &mut columns);
@@ -149,13 +136,13 @@ impl Impulses<'_> {
                 rows.extend(point_row(&columns.1, &touch, touch.axes[k]).iter());
                 w.push(touch.speeds[k]);
             }
-            all_axes.push((key, touch.axes));
+            touches.push((key, touch.axes, touch.gap));
         }
         self.mass.factor(theta, 1.0, diagonal)?;
         let J = DMatrix::from_row_slice(w.len(), n, &rows);
         let G = self.delassus(&J);
         let laws = blocks.iter().map(|&(_, _, law)| law).collect();
-        Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, axes: all_axes })
+        Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, touches })
     }
 
     /// J M⁻¹Jᵀ: the products of the rows of D^{−½}L⁻ᵀJᵀ.
@@ -183,15 +170,10 @@ impl Impulses<'_> {
         G
     }
 
-    /// Every pair of a contact point and a plane.
-    pub fn touches(&self, t: f64, theta: &[f64]) -> Vec<(usize, usize, Touch)> {
-        let (surfaces, poses) = (self.surfaces(t), self.poses(theta));
-        let mut found = Vec::with_capacity(self.contacts.pairs());
-        for (k, point) in self.contacts.points.iter().enumerate() {
-            let T = self.pose_of(&poses, point.frame);
-            found.extend(surfaces.iter().enumerate().map(|(plane, surface)| (k, plane, point.touch(T, surface))));
-        }
-        found
+    /// A contact point next to a plane.
+    pub fn touch(&self, theta: &[f64], point: usize, surface: &Surface) -> Touch {
+        let of = &self.contacts.points[point];
+        of.touch(forward_kinematics(self.model, theta, of.frame), surface)
     }
 
     /// The body Jacobian of a frame, unless the columns are already its.
