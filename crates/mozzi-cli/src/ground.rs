@@ -7,7 +7,7 @@ use crate::robot::RobotArguments;
 use clap::Args;
 use mozzi::simulation::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use mozzi::{Model, SE3, Vec3};
-use mozzi_urdf::geometry::{contact_points, geometry_with};
+use mozzi_urdf::geometry::{FRICTION, Geometry, Shape, contact_points, geometry_with};
 use mozzi_urdf::json::Step;
 use serde_json::Value;
 use std::path::Path;
@@ -21,7 +21,7 @@ pub struct GroundArguments {
     /// A frame whose origin touches planes, instead of the collision shapes; may be repeated
     #[arg(long, value_name = "FRAME")]
     contact: Vec<String>,
-    /// Coefficient of friction of the contacts [default: 0.7]
+    /// Coefficient of friction of the contacts [default: that of MJCF's geoms, else 0.7]
     #[arg(long, value_name = "MU")]
     contact_friction: Option<String>,
     /// Coefficient of restitution of the contacts, 0 to 1 [default: 0]
@@ -38,7 +38,8 @@ pub struct GroundArguments {
 impl GroundArguments {
     /// The contacts; none without the flags.
     pub fn contacts(&self, robot: &RobotArguments, model: &Model) -> Result<Contacts<'static>> {
-        let coefficients = self.coefficients()?;
+        let (mu, restitution) = self.coefficients()?;
+        let coefficients = [mu.unwrap_or(FRICTION), restitution];
         if !self.ground && self.contacts.is_none() {
             return Ok(Contacts::default());
         }
@@ -46,22 +47,44 @@ impl GroundArguments {
         if let Some(file) = &self.contacts {
             found = read(file, model, coefficients)?;
         }
-        if found.planes.is_empty() || self.ground {
+        let shapes = if robot.model == "-" {
+            Geometry::default()
+        } else {
+            geometry_with(&robot.model, &robot.settings().xacro)?
+        };
+        if self.ground && !shapes.planes.is_empty() {
+            let plane = |(name, T): &(String, SE3)| Plane::fixed(name.clone(), *T);
+            found.planes.extend(shapes.planes.iter().map(plane));
+        } else if found.planes.is_empty() || self.ground {
             found.planes.push(Plane::ground());
         }
         if found.points.is_empty() {
-            found.points = self.points(robot, model, coefficients)?;
+            found.points = self.points(robot, model, &shapes.shapes, (mu, restitution))?;
         }
+        let (count, planes) = (found.points.len(), found.planes.len());
+        failure::note(&format!(
+            "--ground: {count} contact points, {planes} plane{}",
+            if planes == 1 { "" } else { "s" }
+        ));
         Ok(found)
     }
 
-    fn coefficients(&self) -> Result<[f64; 2]> {
-        let of = |flag, text: &Option<String>, default| text.as_ref().map_or(Ok(default), |text| number(flag, text));
-        Ok([of("--contact-friction", &self.contact_friction, 0.7)?, of("--restitution", &self.restitution, 0.0)?])
+    /// μ, if it is given, and e.
+    fn coefficients(&self) -> Result<(Option<f64>, f64)> {
+        let of = |flag, text: &Option<String>| text.as_ref().map(|text| number(flag, text)).transpose();
+        let mu = of("--contact-friction", &self.contact_friction)?;
+        Ok((mu, of("--restitution", &self.restitution)?.unwrap_or(0.0)))
     }
 
     /// The frames of `--contact`; else the collision shapes; else the ends of the robot.
-    fn points(&self, robot: &RobotArguments, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Vec<ContactPoint>> {
+    fn points(
+        &self,
+        robot: &RobotArguments,
+        model: &Model,
+        shapes: &[Shape],
+        (given, restitution): (Option<f64>, f64),
+    ) -> Result<Vec<ContactPoint>> {
+        let mu = given.unwrap_or(FRICTION);
         let of_frame = |name: &str| -> Result<ContactPoint> {
             let point = ContactPoint::new(name, model.frame(name)?, Vec3::zero(), mu);
             Ok(ContactPoint { restitution, ..point })
@@ -70,8 +93,7 @@ impl GroundArguments {
             return self.contact.iter().map(|name| of_frame(name)).collect();
         }
         if robot.model != "-" {
-            let shapes = geometry_with(&robot.model, &robot.settings().xacro)?.shapes;
-            let found = contact_points(model, &shapes, Path::new(&robot.model), None, [mu, restitution]);
+            let found = contact_points(model, shapes, Path::new(&robot.model), None, (given, restitution));
             found.left_out.iter().for_each(|reason| failure::note(&format!("--ground: {reason}")));
             if !found.points.is_empty() {
                 return Ok(found.points);
@@ -88,16 +110,35 @@ impl GroundArguments {
     }
 }
 
-/// Moves a floating base up or down, so that its lowest contact point is on the plane that is nearest.
-pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64]) {
-    let lowest = contacts.gaps(model, 0.0, theta).into_iter().fold(f64::INFINITY, f64::min);
-    if model.is_floating() && lowest.is_finite() {
-        theta[6] -= lowest;
-        failure::note(&format!(
-            "--ground: the base starts at z = {:.6} m, where its lowest contact point touches",
-            theta[6]
-        ));
+/// A start may be this far within a plane: a floating base is lifted, m.
+const DEEPEST: f64 = 0.05;
+/// So far within a plane no base is lifted, m: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Moves a floating base up or down, so that its lowest contact point is on the plane that is nearest; a start that was
+/// given is lifted out of the ground only.
+pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64], is_own: bool) -> Result<()> {
+    let gaps = contacts.gaps(model, 0.0, theta);
+    let Some((k, &lowest)) = gaps.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { return Ok(()) };
+    if !is_own && lowest >= -ROUNDING {
+        return Ok(());
     }
+    if model.is_floating() && (is_own || lowest >= -DEEPEST) {
+        theta[6] -= lowest;
+        let (z, depth) = (theta[6], -lowest);
+        failure::note(&match is_own {
+            true => format!("--ground: the base starts at z = {z:.6} m, where its lowest contact point touches"),
+            false => format!(
+                "--ground: the base starts at z = {z:.6} m, {depth:.6} m higher than given: it was in the ground"
+            ),
+        });
+        return Ok(());
+    }
+    let link = model.frame_name(contacts.points[k / contacts.planes.len()].frame);
+    let remedy =
+        if model.is_floating() { "; a start may be 5 cm deep" } else { "; its base is fixed, --floating frees it" };
+    let message = format!("--ground: link `{link}` starts {:.6} m within the ground{remedy}", -lowest);
+    if lowest < -1e-3 { Err(crate::failure::Failure::Wrong(message)) } else { Ok(()) }
 }
 
 fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contacts<'static>> {

@@ -70,11 +70,11 @@ impl Drawing {
 
     /// The drawing of a text, such as one from a pipe: without meshes, since it has no folder.
     pub fn of_text(file_name: &str, text: &[u8], meshes: Meshes) -> Self {
-        let Geometry { mut shapes, left_out } = parse(file_name, text);
+        let Geometry { mut shapes, left_out, planes } = parse(file_name, text);
         let all = shapes.len();
         shapes.retain(|shape| !matches!(shape.form, Form::Mesh { .. }));
         let meshless = all - shapes.len();
-        let mut drawing = Self::new(Geometry { shapes, left_out }, Path::new(file_name), meshes, None);
+        let mut drawing = Self::new(Geometry { shapes, left_out, planes }, Path::new(file_name), meshes, None);
         if meshless > 0 && meshes != Meshes::None {
             drawing
                 .notes
@@ -83,7 +83,7 @@ impl Drawing {
         drawing
     }
 
-    fn new(Geometry { shapes, left_out }: Geometry, file: &Path, meshes: Meshes, root: Option<&Path>) -> Self {
+    fn new(Geometry { shapes, left_out, .. }: Geometry, file: &Path, meshes: Meshes, root: Option<&Path>) -> Self {
         let mut drawing = Drawing { notes: left_out.iter().map(ToString::to_string).collect(), ..Drawing::default() };
         for shape in chosen(shapes, meshes) {
             if drawing.has_mesh(&shape.form, file, root) {

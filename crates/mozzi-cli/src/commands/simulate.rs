@@ -18,6 +18,7 @@ use crate::text::scalar;
 use crate::workload::{BINARY, TEXT, Workload};
 use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
+use mozzi::model::Bounds;
 use mozzi::quantities::ForwardDynamics;
 use mozzi::simulation::{
     Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned,
@@ -51,9 +52,10 @@ pub struct SimulateArguments {
     time: Option<String>,
     #[command(flatten)]
     motors: MotorArguments,
-    /// How to treat position limits; if enforced, a joint stops at its limit
-    #[arg(long, value_name = "WHAT", default_value = "report")]
-    joint_limits: Limit,
+    /// How to treat position limits; if enforced, a joint stops at its limit [default: respect on the ground, else
+    /// report]
+    #[arg(long, value_name = "WHAT")]
+    joint_limits: Option<Limit>,
     #[command(flatten)]
     events: EventArguments,
     /// Smooth Coulomb friction: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
@@ -83,7 +85,7 @@ pub struct SimulateArguments {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Way {
-    /// moreau if the robot has dry friction or contacts, else rk4
+    /// moreau if the robot has dry friction, contacts or limits to respect, else rk4
     Auto,
     /// Moreau-Jean, for dry friction, stops and contacts: order 2 as long as no contact changes
     Moreau,
@@ -129,6 +131,19 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
     Err(Failure::Stopped(text))
 }
 
+/// Moves the joints of a start that nobody gave into their limits.
+fn within_limits(model: &Model, theta: &mut [f64]) {
+    let bounds = Bounds::of(model);
+    for ((k, &[low, high]), name) in bounds.joints.iter().enumerate().zip(model.joint_names()) {
+        let value = bounds.value(theta, k);
+        if !(low..=high).contains(&value) {
+            let limit = value.clamp(low, high);
+            bounds.places[k].put_at_limit(theta, limit);
+            failure::note(&format!("joint `{name}` starts at its limit {limit}: {value} is beyond"));
+        }
+    }
+}
+
 impl SimulateArguments {
     fn simulate(&self, model: &Model) -> Result<Outcome> {
         let followed = self.motors.followed(model)?;
@@ -140,8 +155,13 @@ impl SimulateArguments {
             }
         }
         let contacts = self.ground.contacts(&self.robot, model)?;
-        if let (false, None, None, None) = (contacts.is_empty(), &self.start.state, &self.start.theta, &followed) {
-            settle(model, &contacts, &mut theta);
+        let is_own = self.start.state.is_none() && self.start.theta.is_none() && followed.is_none();
+        let limits = self.joint_limits.unwrap_or(if contacts.is_empty() { Limit::Report } else { Limit::Respect });
+        if is_own && limits == Limit::Respect {
+            within_limits(model, &mut theta);
+        }
+        if !contacts.is_empty() {
+            settle(model, &contacts, &mut theta, is_own)?;
         }
         let (theta, dtheta) = assembled(model, theta, dtheta)?;
         let hold = Hold::new(&theta, model.n());
@@ -156,7 +176,7 @@ impl SimulateArguments {
         let input = (&mut motors, self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
         self.workload(model, end)?.check(self.allow_large)?;
-        let options = self.options(end)?;
+        let options = self.options(end, limits)?;
         let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
         let names: Vec<String> = contacts.names().collect();
         let (motion, account, ending, touches) =
@@ -213,7 +233,7 @@ impl SimulateArguments {
         self.page.write(file, &self.robot, model, Some((motion, outcome.account.rows)))
     }
 
-    fn options(&self, end: f64) -> Result<Options> {
+    fn options(&self, end: f64, limits: Limit) -> Result<Options> {
         let friction = match &self.slip_speed {
             None => Friction::Coulomb,
             Some(text) => Friction::Smooth { slip_speed: number("--slip-speed", text)? },
@@ -227,7 +247,7 @@ impl SimulateArguments {
             Way::Dopri => Method::DormandPrince { tolerance: number("--tolerance", &self.tolerance)? },
             Way::Midpoint => Method::Midpoint,
         };
-        let (record_every, joint_limits) = (self.record_every, self.joint_limits.into());
+        let (record_every, joint_limits) = (self.record_every, limits.into());
         let options = Options::with_step(end, number("--step", &self.step)?)?;
         Ok(Options { method, friction, record_every, joint_limits, ..options })
     }

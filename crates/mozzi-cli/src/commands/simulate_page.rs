@@ -44,7 +44,9 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
                 "largest_residual": a.largest_residual,
                 "last_residual": a.last_residual,
                 "unsolved": a.unsolved,
-                "steps_across": a.steps_across,
+                "halvings": a.halvings,
+                "unsettled": a.unsettled,
+                "lifted": a.lifted,
                 "most_rows": a.most_rows,
             })),
             "contacts": outcome.contacts,
@@ -188,11 +190,16 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
             0 => String::new(),
             count => format!("; {count} steps above 1e-6: their problem may have no solution"),
         };
-        let across = match a.steps_across {
+        let halved = match a.halvings {
             0 => String::new(),
-            count => format!("; {count} steps of Moreau-Jean across events that could not be separated"),
+            count => format!("; steps halved {count} times, where they did not settle"),
         };
-        format!("dry friction, stops, contacts: solved to {} m/s or rad/s{unsolved}{across}", about(a.largest_residual))
+        let unsettled = match a.unsettled {
+            0 => String::new(),
+            count => format!("; {count} of the shortest steps did not settle: a smaller --step may help"),
+        };
+        let residual = about(a.largest_residual);
+        format!("dry friction, stops, contacts: solved to {residual} m/s or rad/s{unsolved}{halved}{unsettled}")
     };
     let events = events.chain(contact_lines(outcome)).chain(outcome.one_sided.iter().map(account));
     let events = events.chain(outcome.closing.iter().map(closing));

@@ -261,8 +261,10 @@ class OneSided(NamedTuple):
     last_residual: float
     unsolved: int
     """Steps with a residual above 1e-6: their problem may have no solution."""
-    steps_across: int
-    """Steps of Moreau and Jean's method that 'dopri' took across events that it could not separate."""
+    halvings: int
+    """How often a step was halved, because its iteration did not contract, or a loop did not close."""
+    unsettled: int
+    """Steps of the shortest length whose iteration did not contract; they count."""
 
 
 class ConstraintRank(NamedTuple):

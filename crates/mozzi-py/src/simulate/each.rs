@@ -116,7 +116,8 @@ fn trajectories<'py>(
         largest_residual: a.largest_residual.max(b.largest_residual),
         last_residual: a.last_residual.max(b.last_residual),
         unsolved: a.unsolved + b.unsolved,
-        steps_across: a.steps_across + b.steps_across,
+        halvings: a.halvings + b.halvings,
+        unsettled: a.unsettled + b.unsettled,
         ..a
     });
     let forces = runs.iter().flat_map(|run| run.motion.contact_forces.iter().copied()).collect::<Vec<_>>();

@@ -107,8 +107,8 @@ impl PyModel {
     ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers
     ///     (..., n).
     /// method : {'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
-    ///     How a step is taken. 'auto' is 'moreau' if there is dry friction or a contact, else 'rk4'. 'moreau' is
-    ///     Moreau and Jean's step for one-sided forces. 'dopri', of order 5, finds its steps by a tolerance;
+    ///     How a step is taken. 'auto' is 'moreau' if there is dry friction, a contact or a limit to respect, else
+    ///     'rk4'. 'moreau' is Moreau and Jean's step for one-sided forces, which the others refuse. 'dopri', of order 5, finds its steps by a tolerance;
     ///     'midpoint' is implicit and symplectic: the energy's error stays bounded.
     /// tolerance : float or None
     ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇; 1e-9 if
@@ -123,7 +123,7 @@ impl PyModel {
     ///     Likewise, reported in the result's `events`; the motion goes on. One start only.
     /// joint_limits : {'report', 'ignore', 'respect'}
     ///     How to treat the joints' position limits: 'report' lists them in the result's `joint_limits`, 'respect'
-    ///     brings a joint to rest at its limit. Many starts report no limits.
+    ///     brings a joint to rest at its limit, by 'moreau'. Many starts report no limits.
     /// gravity : array_like, shape (3,), optional
     ///     In place of the model's own: m/s².
     /// slip_speed : float, optional

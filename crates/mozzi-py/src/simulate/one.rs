@@ -124,7 +124,8 @@ pub fn account(py: Python<'_>, found: OneSidedAccount) -> PyResult<Bound<'_, PyA
         found.largest_residual.into_pyobject(py)?.into_any(),
         found.last_residual.into_pyobject(py)?.into_any(),
         found.unsolved.into_pyobject(py)?.into_any(),
-        found.steps_across.into_pyobject(py)?.into_any(),
+        found.halvings.into_pyobject(py)?.into_any(),
+        found.unsettled.into_pyobject(py)?.into_any(),
     ];
     named(py, "OneSided", fields)
 }

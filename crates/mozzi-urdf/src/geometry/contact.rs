@@ -1,10 +1,11 @@
 //! Points of shapes that a plane can touch.
 
 use super::vertices::extreme_vertices;
-use super::{Form, Purpose, Shape, locate};
+use super::{Form, Shape, locate};
 use mozzi::simulation::{ContactPoint, Support};
 use mozzi::{Model, Vec3};
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// The contact points of a robot's shapes, and the shapes that have none, each with the reason.
 #[derive(Clone, Debug, Default)]
@@ -15,20 +16,27 @@ pub struct ShapeContacts {
     pub left_out: Vec<String>,
 }
 
-/// The points at which planes touch `<collision>` shapes: the corners of boxes, spheres, the two ends of capsules, the
+/// The coefficient of friction of a shape that has none.
+pub const FRICTION: f64 = 0.7;
+
+/// The points at which planes touch shapes, of links that move: the corners of boxes, spheres, the two ends of capsules, the
 /// rims of cylinders as discs, and the extreme vertices of meshes (STL and OBJ; of the 2,000 directions of a sphere, so
-/// at most that many). Ellipsoids are left out. All get the friction coefficient μ and the restitution e.
+/// at most that many). Ellipsoids are left out. All get the restitution e and the friction
+/// coefficient μ that is given, or else their own, or [`FRICTION`].
 pub fn contact_points(
     model: &Model,
     shapes: &[Shape],
     robot_file: &Path,
     root: Option<&Path>,
-    [mu, restitution]: [f64; 2],
+    (mu, restitution): (Option<f64>, f64),
 ) -> ShapeContacts {
-    let mut found = ShapeContacts::default();
-    for shape in shapes.iter().filter(|shape| shape.purpose == Purpose::Collision) {
-        let Ok(frame) = model.frame(&shape.link) else { continue };
-        let places = match supports(shape, robot_file, root) {
+    let (mut found, mut meshes) = (ShapeContacts::default(), Meshes::new());
+    let theta = model.neutral_configuration::<f64>();
+    let moves = |frame| model.body_jacobian(&theta, frame).is_ok_and(|J| J.matrix().amax() > 0.0);
+    for shape in shapes.iter().filter(|shape| shape.touches) {
+        let Some(frame) = model.frame(&shape.link).ok().filter(|&frame| moves(frame)) else { continue };
+        let mu = mu.or(shape.friction).unwrap_or(FRICTION);
+        let places = match supports(shape, robot_file, root, &mut meshes) {
             Ok(places) => places,
             Err(reason) => {
                 found.left_out.push(format!("collision shape of `{}`: {reason}", shape.link));
@@ -44,8 +52,22 @@ pub fn contact_points(
     found
 }
 
+/// The extreme vertices of each file: several shapes may show it.
+type Meshes = BTreeMap<PathBuf, Result<Vec<Vec3>, String>>;
+
+fn read(path: &Path) -> Result<Vec<Vec3>, String> {
+    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let format = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    extreme_vertices(&format, &bytes)
+}
+
 /// The points of one shape, in the frame of its link.
-fn supports(shape: &Shape, robot_file: &Path, root: Option<&Path>) -> Result<Vec<(Vec3, Support)>, String> {
+fn supports(
+    shape: &Shape,
+    robot_file: &Path,
+    root: Option<&Path>,
+    meshes: &mut Meshes,
+) -> Result<Vec<(Vec3, Support)>, String> {
     let T = shape.T;
     let at = |x: f64, y: f64, z: f64| T * Vec3([x, y, z]);
     let axis = T.R * Vec3([0.0, 0.0, 1.0]);
@@ -66,9 +88,7 @@ fn supports(shape: &Shape, robot_file: &Path, root: Option<&Path>) -> Result<Vec
         Form::Ellipsoid { .. } => return Err("planes do not touch ellipsoids".into()),
         Form::Mesh { file, scale } => {
             let path = locate(robot_file, file, root).map_err(|error| error.to_string())?;
-            let bytes = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-            let format = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-            let vertices = extreme_vertices(&format, &bytes)?;
+            let vertices = meshes.entry(path).or_insert_with_key(|path| read(path)).clone()?;
             let place = |v: Vec3| at(v.0[0] * scale[0], v.0[1] * scale[1], v.0[2] * scale[2]);
             vertices.into_iter().map(|v| (place(v), Support::Point)).collect()
         }
@@ -98,7 +118,7 @@ mod tests {
     fn shapes_have_points_of_support() {
         let model = crate::parse("foot.urdf", ROBOT).expect("sound").description.build().expect("sound");
         let shapes = parse("foot.urdf", ROBOT).shapes;
-        let found = contact_points(&model, &shapes, Path::new("foot.urdf"), None, [0.5, 0.1]);
+        let found = contact_points(&model, &shapes, Path::new("foot.urdf"), None, (Some(0.5), 0.1));
         assert_eq!(found.points.len(), 8 + 1 + 2 + 2);
         assert!(found.points.iter().all(|point| point.mu == 0.5 && point.restitution == 0.1));
         assert_eq!((&*found.points[0].name, &*found.points[3].name), ("foot", "foot.3"));

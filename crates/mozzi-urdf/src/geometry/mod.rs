@@ -8,7 +8,7 @@ mod read;
 mod shape;
 mod vertices;
 
-pub use contact::{ShapeContacts, contact_points};
+pub use contact::{FRICTION, ShapeContacts, contact_points};
 pub use files::{NotLocated, locate};
 pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
@@ -24,6 +24,7 @@ use crate::pages::Pages;
 use crate::source::Source;
 use crate::version::Version;
 use crate::{bytes, embedded, file_bytes, folder_of, mjcf, syntax};
+use mozzi::SE3;
 use std::path::Path;
 
 /// The shapes of a robot.
@@ -31,6 +32,8 @@ use std::path::Path;
 pub struct Geometry {
     /// In the order of the file.
     pub shapes: Vec<Shape>,
+    /// Planes of MJCF's world, with their names.
+    pub planes: Vec<(String, SE3)>,
     /// Invalid shapes, which are omitted: warnings, since shapes do not affect the dynamics.
     pub left_out: Vec<Diagnostic>,
 }
@@ -83,8 +86,8 @@ fn parse_in(
     let mut shapes = Vec::new();
     if dialect == Dialect::Mjcf && !findings.has_errors() {
         let mut sources = vec![source];
-        let (shapes, cx) = mjcf::shapes(&mut sources, folder_of(folder, file_name, arguments), arguments);
-        return Ok(placed(shapes, cx.findings, &sources, dialect));
+        let (shapes, planes, cx) = mjcf::shapes(&mut sources, folder_of(folder, file_name, arguments), arguments);
+        return Ok(Geometry { planes, ..placed(shapes, cx.findings, &sources, dialect) });
     }
     if dialect == Dialect::Urdf && source.text.trim_start().starts_with('<') {
         match syntax::parse(&source, Dialect::Urdf) {
@@ -105,7 +108,8 @@ fn parse_in(
 
 fn placed(shapes: Vec<Shape>, findings: Findings, sources: &[Source], dialect: Dialect) -> Geometry {
     let placed = findings.place(sources, dialect);
-    Geometry { shapes, left_out: placed.diagnostics.into_iter().map(Diagnostic::into_warning).collect() }
+    let planes = Vec::new();
+    Geometry { shapes, planes, left_out: placed.diagnostics.into_iter().map(Diagnostic::into_warning).collect() }
 }
 
 #[cfg(test)]
@@ -135,7 +139,7 @@ mod tests {
 
     #[test]
     fn shapes_are_read_with_their_places_and_colours() {
-        let Geometry { shapes, left_out } = parse("arm.urdf", ARM);
+        let Geometry { shapes, left_out, .. } = parse("arm.urdf", ARM);
         let forms: Vec<_> = shapes.iter().map(|shape| (&*shape.link, shape.purpose, shape.form.clone())).collect();
         let mesh = Form::Mesh { file: "package://arm/meshes/arm.STL".into(), scale: [1.0, -1.0, 1.0] };
         assert_eq!(
@@ -192,7 +196,7 @@ mod tests {
 
     #[test]
     fn geoms_are_shapes() {
-        let Geometry { shapes, left_out } = parse("figure.xml", FIGURE);
+        let Geometry { shapes, left_out, .. } = parse("figure.xml", FIGURE);
         let forms: Vec<_> = shapes.iter().map(|shape| (shape.purpose, shape.form.clone())).collect();
         let hand = Form::Mesh { file: "assets/deep/hand.stl".into(), scale: [0.001; 3] };
         let expected = [

@@ -25,7 +25,8 @@ pub(crate) fn robot(root: &Element, cx: &mut Context) -> Vec<Shape> {
             for element in children(&link, word) {
                 let Some((T, form)) = placed_form(&element, cx) else { continue };
                 let color = children(&element, "material").next().and_then(|m| name_color(&m, &mut colors, cx));
-                shapes.push(Shape { link: name.text.to_string(), purpose, T, form, color });
+                let touches = purpose == Purpose::Collision;
+                shapes.push(Shape { link: name.text.to_string(), purpose, T, form, color, touches, friction: None });
             }
         }
     }

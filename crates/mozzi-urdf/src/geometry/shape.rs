@@ -15,14 +15,19 @@ pub struct Shape {
     pub form: Form,
     /// Red, green, blue, opacity from 0 to 1, if the file gives them.
     pub color: Option<[f64; 4]>,
+    /// Do planes stop it? A URDF's `<collision>`; in MJCF a geom whose `contype` or `conaffinity` has the bit 1, whether it
+    /// is drawn or not.
+    pub touches: bool,
+    /// Its own coefficient of sliding friction, in MJCF.
+    pub friction: Option<f64>,
 }
 
 /// The purpose of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// `<visual>`; in MJCF a geom of the groups 0 to 2, which MuJoCo draws.
+    /// `<visual>`; in MJCF a geom that MuJoCo draws: of the groups 0 to 2, and not transparent.
     Visual,
-    /// `<collision>`; in MJCF a geom of another group.
+    /// `<collision>`; in MJCF another geom.
     Collision,
 }
 

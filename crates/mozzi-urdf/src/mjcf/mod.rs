@@ -82,7 +82,7 @@ use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
 use keyframe::Key;
-use mozzi::Description;
+use mozzi::{Description, SE3};
 use option::Options;
 use shapes::Shapes;
 use std::path::Path;
@@ -127,11 +127,11 @@ pub(crate) fn shapes(
     sources: &mut Vec<Source>,
     folder: Option<&Path>,
     given: &XacroArguments,
-) -> (Vec<Shape>, Context) {
+) -> (Vec<Shape>, Vec<(String, SE3)>, Context) {
     let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
     match read_pages(sources, (folder, given), Wanted::Shapes, &mut cx) {
         Some((description, _, Some(shapes))) => shapes.named(&description.links),
-        _ => (Vec::new(), Context::default()),
+        _ => (Vec::new(), Vec::new(), Context::default()),
     }
 }
 

@@ -36,6 +36,8 @@ pub(crate) struct Shapes {
     colors: BTreeMap<String, [f64; 4]>,
     /// With the index of their link.
     found: Vec<(usize, Shape)>,
+    /// Planes of the world that geoms with the usual bits touch.
+    planes: Vec<(String, SE3)>,
     /// Findings about shapes: warnings, since shapes do not affect the dynamics.
     pub cx: Context,
 }
@@ -89,9 +91,9 @@ impl Shapes {
     }
 
     /// The shapes, by the names of their links.
-    pub fn named(self, links: &[mozzi::model::description::Link]) -> (Vec<Shape>, Context) {
+    pub fn named(self, links: &[mozzi::model::description::Link]) -> (Vec<Shape>, Vec<(String, SE3)>, Context) {
         let name = |(link, shape): (usize, Shape)| Some(Shape { link: links.get(link)?.name.clone(), ..shape });
-        (self.found.into_iter().filter_map(name).collect(), self.cx)
+        (self.found.into_iter().filter_map(name).collect(), self.planes, self.cx)
     }
 
     /// Keeps the shapes of some links and renumbers them.
@@ -109,6 +111,12 @@ impl<'a> Model<'a> {
             let subject = geom.item.element.attribute("name").map(|name| format!("geom `{}`", shown(name.text)));
             let element = geom.item.element.called(subject.unwrap_or_else(|| "geom".to_string()));
             let item = Item { element, ..geom.item.clone() };
+            if link == 0 && item.word("type", &TYPES, &mut shapes.cx) == Some("plane") && touches(&item, &mut shapes.cx)
+            {
+                let name = item.element.attribute("name").map_or("ground", |name| name.text).to_string();
+                let T = geom.T * pose(&item, &self.compiler, &mut shapes.cx);
+                shapes.planes.push((name, T));
+            }
             if let Some(shape) = self.shape(&item, geom.T, &mut shapes) {
                 shapes.found.push((link, shape));
             }
@@ -116,15 +124,22 @@ impl<'a> Model<'a> {
         self.shapes = Some(shapes);
     }
 
-    /// Nothing for planes, height fields and fully transparent geoms.
+    /// Nothing for planes and height fields.
     fn shape(&self, item: &Item<'a>, T: SE3, shapes: &mut Shapes) -> Option<Shape> {
         let kind = item.word("type", &TYPES, &mut shapes.cx).unwrap_or("sphere");
         let material = || item.value("material").and_then(|value| shapes.colors.get(value.text).copied());
         let color = if item.has("rgba") { item.vector::<4>("rgba", &mut shapes.cx) } else { material() };
-        if matches!(kind, "plane" | "hfield") || color.is_some_and(|[.., opacity]| opacity <= 0.0) {
+        if matches!(kind, "plane" | "hfield") {
             return None;
         }
-        let is_hidden = item.number("group", 0.0, &mut shapes.cx) >= FIRST_HIDDEN_GROUP;
+        let is_clear = color.is_some_and(|[.., opacity]| opacity <= 0.0);
+        let is_hidden = item.number("group", 0.0, &mut shapes.cx) >= FIRST_HIDDEN_GROUP || is_clear;
+        let touches = touches(item, &mut shapes.cx);
+        if is_clear && !touches {
+            return None; // neither drawn nor touched
+        }
+        let has_own = item.has("friction"); // the first of up to three; MuJoCo's is 1
+        let friction = Some(if has_own { item.overlaid::<3>("friction", &mut shapes.cx)[0] } else { 1.0 });
         let (form, frame) = match item.value("mesh") {
             Some(mesh) => {
                 let Some(mesh) = shapes.meshes.get(mesh.text).cloned() else {
@@ -142,8 +157,14 @@ impl<'a> Model<'a> {
             }
         };
         let purpose = if is_hidden { Purpose::Collision } else { Purpose::Visual };
-        Some(Shape { link: String::new(), purpose, T: T * frame, form, color })
+        Some(Shape { link: String::new(), purpose, T: T * frame, form, color, touches, friction })
     }
+}
+
+/// Does MuJoCo test it against a plane with the default bits, contype = conaffinity = 1?
+fn touches(item: &Item, cx: &mut Context) -> bool {
+    let has_bit = |name, cx: &mut Context| (item.number(name, 1.0, cx) as i64) & 1 == 1;
+    has_bit("contype", cx) | has_bit("conaffinity", cx)
 }
 
 /// v' = S Rᵀ(v − p) of a vertex v: a scale of the file's coordinates, then a rigid motion. If S is not the same in all

@@ -5,7 +5,7 @@ use super::shapes::drawn;
 use crate::robot::Robot;
 use mozzi::simulation::ContactPoint;
 use mozzi::{Description, Model, Vec3};
-use mozzi_urdf::geometry::{Geometry, contact_points, parse_with as geometry};
+use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, parse_with as geometry};
 use mozzi_urdf::{Diagnostic, Style, json};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -14,7 +14,7 @@ use std::path::Path;
 const WARNINGS: usize = 20;
 
 /// Coefficients of contact points; the settings replace them.
-const COEFFICIENTS: [f64; 2] = [0.7, 0.0];
+const COEFFICIENTS: (Option<f64>, f64) = (Some(FRICTION), 0.0);
 
 /// The robot of `{"file": name, "files": {path: text, …}}`, in which `name` is one of the paths. A `description`, of
 /// [`mozzi_urdf::json`], replaces that of the file; shapes stay those of the file. `arguments` are xacro's.
@@ -48,7 +48,7 @@ pub fn open(text: &str) -> Result<(Robot, Value), String> {
         Some(description) => description.build().map_err(|error| error.to_string())?,
         None => return Err(format!("{name} has no robot")),
     };
-    let Geometry { shapes, left_out } =
+    let Geometry { shapes, left_out, .. } =
         if is_json { Geometry::default() } else { geometry(name, source, &settings.xacro) };
     let touching = contact_points(&model, &shapes, Path::new(name), None, COEFFICIENTS);
     let mut notes: Vec<String> = left_out.iter().map(ToString::to_string).collect();
@@ -69,7 +69,7 @@ fn ends(model: &Model) -> Vec<ContactPoint> {
     let robot = model.description();
     let is_end = |name: &str| !robot.joints.iter().any(|joint| joint.parent == name);
     let ends = robot.links.iter().filter(|link| is_end(&link.name));
-    let point = |name: &str| Some(ContactPoint::new(name, model.frame(name).ok()?, Vec3::zero(), COEFFICIENTS[0]));
+    let point = |name: &str| Some(ContactPoint::new(name, model.frame(name).ok()?, Vec3::zero(), FRICTION));
     ends.filter_map(|link| point(&link.name)).collect()
 }
 

@@ -25,8 +25,9 @@ const PASSES: usize = 6;
 const SETTLED: f64 = 1e-10;
 /// A change that is above this after the last pass means that the step is too long, as does one that does not shrink.
 const UNSETTLED: f64 = 1e-6;
-/// A step is halved until it settles and loops close, at most to this part of it.
-const SHORTEST: f64 = 1.0 / 64.0;
+/// A step is halved until it settles and loops close, at most to this part of it: of a robot with loops, and of others,
+/// whose steps do not settle where contacts begin or end to hold, at any length.
+const SHORTEST: [f64; 2] = [1.0 / 64.0, 1.0 / 8.0];
 /// A step is divided at most this often.
 const DIVISIONS: usize = 8;
 /// Joints slower than this are at rest, rad/s or m/s.
@@ -89,9 +90,10 @@ impl Moreau {
             self.implicit[k] = sums.collect();
         }
         let (mut done, mut length) = (0.0, h);
+        let shortest = h * SHORTEST[usize::from(!driven.has_constraints())];
         while done < h * (1.0 - 1e-12) {
             let part = length.min(h - done);
-            let is_shortest = part <= h * SHORTEST;
+            let is_shortest = part <= shortest;
             let start = (state.clone(), impulses.memory.clone());
             match self.part(driven, impulses, state, part, is_shortest) {
                 Ok(true) => done += part,
