@@ -57,8 +57,8 @@ fn conditions_become_true_on_time() {
 
 #[test]
 fn limits_of_joints_are_conditions() {
-    let fall = ["simulate", "panda", "--theta=0,0,0,-1.5,0,1.5,0,0.02", "--time", "1", "--method", "dopri"];
-    let found = json(&[&fall[..], &["--until", "joint-limit"]].concat());
+    let fall = ["simulate", "panda", "--theta=0,0,0,-1.5,0,1.5,0,0.02", "--time", "1"];
+    let found = json(&[&fall[..], &["--method", "dopri", "--until", "joint-limit"]].concat());
     let (event, theta) = (&found["events"][0], numbers(&found["events"][0]["theta"]));
     assert_eq!(event["condition"], "joint-limit: upper limit of panda_joint2");
     assert!((theta[1] - 1.7628).abs() < 1e-12 && found["joint_limits"][0]["joint"] == "panda_joint2");

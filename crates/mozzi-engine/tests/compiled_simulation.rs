@@ -5,7 +5,9 @@ use crate::common;
 
 use common::{error, robots, state};
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{Equation, GravityCompensation, Input, Method, Options, Simulation, Zero, applied, torque};
+use mozzi::simulation::{
+    Equation, Friction, GravityCompensation, Input, Method, Options, Simulation, Zero, applied, torque,
+};
 use mozzi::{Error, Model, Trajectory, Vec3, Wrench};
 use mozzi_engine::{Compiled, compile};
 use std::ops::ControlFlow;
@@ -26,7 +28,8 @@ fn a_motion_is_the_kernels() {
         let [theta, dtheta, tau] = &state(&model, 5);
         let motors = || torque(|_, _, _, x| x.iter_mut().zip(tau).for_each(|(x, tau)| *x += tau));
         for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
-            let options = Options { method, ..Options::new(4e-4, 40) }; // the robots' damped wrists are stiff
+            let friction = Friction::Smooth { slip_speed: 1.0 };
+            let options = Options { method, friction, ..Options::new(4e-4, 40) }; // the robots' damped wrists are stiff
             let found = end(robot.simulate(theta, dtheta, motors(), &options));
             let expected = end(model.simulate(theta, dtheta, motors(), &options));
             let error = error(&found, &expected);

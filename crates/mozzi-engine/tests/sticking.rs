@@ -25,16 +25,13 @@ fn is_dry(model: &Model) -> bool {
 
 #[test]
 fn many_robots_with_dry_friction_move_as_each_alone() {
-    let dopri = Method::DormandPrince { tolerance: 1e-8 };
     let (duration, steps) = (0.05, 20);
     for model in [tree(5, 3, 0), floating_tree(3, 3, 0)] {
         assert!(is_dry(&model));
         let (nq, n, batch) = (model.nq(), model.n(), Batch::new(&model));
         let [theta, dtheta, tau] = starts(&model);
         let environment = BatchEnvironment::from(model.environment());
-        for method in
-            [Method::Automatic, Method::MoreauJean, Method::Euler, Method::RungeKutta4, Method::Midpoint, dopri]
-        {
+        for method in [Method::Automatic, Method::MoreauJean] {
             let (mut q, mut v) = (theta.clone(), dtheta.clone());
             batch.simulate(&mut q, &mut v, &tau, &environment, method, duration, steps).expect("motions");
             for k in 0..ROBOTS {

@@ -208,7 +208,9 @@ def test_joint_limits():
     assert ignored.joint_limits == [] and np.array_equal(reported.theta, ignored.theta)
     first = reported.joint_limits[0]
     assert first.joint in panda.joint_names and first.beyond > 0 and 0 < first.first < 1
-    respected = panda.simulate(theta, np.zeros(8), 0.5, 100, joint_limits="respect", **options)
+    with pytest.raises(ValueError, match=f"`{first.joint}` reaches its limit .* `moreau`"):
+        panda.simulate(theta, np.zeros(8), 1.0, 100, joint_limits="respect", **options)
+    respected = panda.simulate(theta, np.zeros(8), 0.5, 500, joint_limits="respect")
     assert respected.joint_limits and all(limit.beyond == 0 for limit in respected.joint_limits)
 
 

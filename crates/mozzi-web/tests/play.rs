@@ -2,7 +2,7 @@
 #![cfg(feature = "play")]
 
 use mozzi::quantities::{INPUTS, Query};
-use mozzi::simulation::{Contacts, GravityCompensation, Options, Plane, Simulation, Zero};
+use mozzi::simulation::{Contacts, GravityCompensation, Method, Options, Plane, Simulation, Zero};
 use mozzi::{Model, SE3};
 use mozzi_web::{Robot, Session};
 use serde_json::{Value, json};
@@ -137,7 +137,7 @@ fn steps_are_the_simulations() {
         play(robot, json!({ "do": "set", "motors": motors, "omega": 5, "zeta": 1, "reset": true }));
         let answer = play(robot, json!({ "do": "step", "step": 0.001, "steps": 50 }));
         let model = robot.model().clone();
-        let options = Options { joint_limits: mozzi::simulation::Policy::Respect, ..Options::new(0.05, 50) };
+        let options = Options { method: Method::RungeKutta4, ..Options::new(0.05, 50) };
         let run = match motors {
             "off" => Simulation::new(options).run(&model, &theta, &dtheta, Zero),
             _ => Simulation::new(options).run(&model, &theta, &dtheta, GravityCompensation::new(&model)),

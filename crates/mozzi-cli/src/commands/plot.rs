@@ -1,7 +1,7 @@
 //! `mozzi plot`: figures for papers.
 
 use crate::columns;
-use crate::failure::{Failure, Result};
+use crate::failure::{self, Failure, Result};
 use crate::json::print;
 use crate::numbers::number;
 use crate::progress::Progress;
@@ -130,6 +130,9 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let steps = coarsest as f64 * f64::from(1 << u32::from(arguments.halvings));
     let cause = format!("--step {} with --halvings {}", arguments.step.trim(), arguments.halvings);
     Workload { cause, steps, rows: 0.0, bytes: 0.0, place: "memory".into(), flag: None }.check(false)?;
+    if model.joints().any(|joint| joint.friction != 0.0) {
+        failure::note("dry friction is left out: the methods are those of smooth motions");
+    }
     let mut progress = None;
     let found =
         convergence::convergence(&model, [&theta, &dtheta], time, coarsest, arguments.halvings.into(), |done, all| {

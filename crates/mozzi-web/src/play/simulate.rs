@@ -5,7 +5,7 @@ use super::entry::number;
 use super::motors::motors;
 use super::push::Push;
 use crate::robot::Robot;
-use mozzi::simulation::{ContactPoint, Contacts, Input, Options, Plane, Policy, Simulation};
+use mozzi::simulation::{ContactPoint, Contacts, Input, Method, Options, Plane, Policy, Simulation};
 use mozzi::{Error, FrameId, Wrench};
 use serde_json::{Value, json};
 
@@ -44,7 +44,7 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
     let (model, settings) = (robot.model(), &robot.settings);
     let target = if settings.target.is_empty() { &theta } else { &settings.target };
     let push = Push::parse(model, command)?;
-    let input = Both(motors(model, settings.kind, &settings.gains, target)?, push.clone());
+    let input = || Ok::<_, String>(Both(motors(model, settings.kind, &settings.gains, target)?, push.clone()));
     let options = Options {
         joint_limits: if steps > 0 { settings.limits } else { Policy::Ignore },
         record_every: steps.max(1),
@@ -64,7 +64,16 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         }
         _ => said(error),
     };
-    let run = simulation.run(model, &theta, &dtheta, input).map_err(within_ground)?;
+    // the smooth method as long as no stop acts in this picture, and there is no dry friction
+    let smooth = Simulation::new(Options { method: Method::RungeKutta4, ..options });
+    let by_smooth = match simulation.contacts.is_empty() {
+        true => smooth.run(model, &theta, &dtheta, input()?).ok(),
+        false => None,
+    };
+    let run = match by_smooth {
+        Some(run) => run,
+        None => simulation.run(model, &theta, &dtheta, input()?).map_err(within_ground)?,
+    };
     let (first, last) = (run.motion.sample(0), run.motion.last());
     // each point and the only plane
     let touched = simulation.contacts.frames(model, 0.0, last.theta);

@@ -240,7 +240,6 @@ impl<'r> Course<'r> {
             }
             Integrator::Midpoint(method) => {
                 method.step(from, h, end, driven)?.copy_to(motion);
-                self.close_again()?;
             }
             Integrator::DormandPrince(method) => {
                 let (to, dense) = method.step(from, *duration, driven)?;

@@ -30,6 +30,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// v is found by iteration, to rounding; more than this many means that the step is too long.
 const ITERATIONS: usize = 60;
+/// A step is halved at most to this part of it.
+const SHORTEST: f64 = 1.0 / 64.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct Midpoint {
@@ -61,7 +63,8 @@ impl Midpoint {
         DMatrix::from_row_slice(model.n(), model.n(), &self.M)
     }
 
-    /// A step of h seconds, which ends at a time.
+    /// A step of h seconds, which ends at a time: in parts of half the length, and so on, where its iteration does not
+    /// converge, or a loop does not close.
     pub fn step<I: Input>(
         &mut self,
         from: &State,
@@ -69,6 +72,36 @@ impl Midpoint {
         end: f64,
         driven: &mut Driven<'_, I>,
     ) -> Result<State, Error> {
+        let (mut state, mut length) = (from.clone(), h);
+        loop {
+            let part = length.min(end - state.t);
+            let is_last = state.t + 1.000_001 * part >= end;
+            let then = if is_last { end } else { state.t + part };
+            match self.part(&state, part, then, driven) {
+                Ok(to) if is_last => return Ok(to),
+                Ok(to) => state = to,
+                Err(Error::NoConvergence { .. } | Error::Opened { .. }) if part > SHORTEST * h => {
+                    self.restart();
+                    length = 0.5 * part;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// A part of a step, closed.
+    fn part<I: Input>(&mut self, from: &State, h: f64, end: f64, driven: &mut Driven<'_, I>) -> Result<State, Error> {
+        let mut to = self.rule(from, h, end, driven)?;
+        if driven.has_constraints() {
+            driven.close(end, &mut to.theta, &mut to.dtheta)?;
+            driven.complete(&mut to)?;
+            self.restart();
+        }
+        Ok(to)
+    }
+
+    /// The rule.
+    fn rule<I: Input>(&mut self, from: &State, h: f64, end: f64, driven: &mut Driven<'_, I>) -> Result<State, Error> {
         let (model, n) = (driven.model, from.dtheta.len());
         let (middle, half) = (from.t + 0.5 * h, 0.5 * h);
         let p = match self.momentum.take() {

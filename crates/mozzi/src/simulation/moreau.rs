@@ -147,14 +147,15 @@ impl Moreau {
         state.t = end;
         let before =
             (!impulses.memory.carrying.is_empty()).then(|| equation.energy(&state.theta, &state.dtheta, state.works));
-        if let (true, Some(before)) = (impulses.correct(end, &mut state.theta, h)?, before) {
-            let after = equation.energy(&state.theta, &state.dtheta, state.works);
+        let corrects = impulses.correct(end, &mut state.theta, h)?;
+        driven.close(end, &mut state.theta, &mut state.dtheta)?;
+        if let (true, Some(before)) = (corrects, before) {
+            let after = driven.equation.energy(&state.theta, &state.dtheta, state.works);
             let lifted = after.kinetic + after.potential - before.kinetic - before.potential;
             impulses.account.lifted += lifted;
             // what touched did so earlier or later in the step, at another speed: the contacts' loss is that much less
             state.works[1] -= lifted;
         }
-        driven.close(end, &mut state.theta, &mut state.dtheta)?;
         Ok(true)
     }
 

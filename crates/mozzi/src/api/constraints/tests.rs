@@ -231,12 +231,34 @@ fn a_four_bar_stops_at_the_limit_of_its_rocker() {
         let rows = model.constraint_rows_at(sample.theta, sample.dtheta);
         let speed = (rows.A * DVector::from_column_slice(sample.dtheta)).amax();
         assert!(rows.phi.amax() < 1e-9 && speed < 1e-9, "{} {speed} at {}", rows.phi.amax(), sample.t);
-        assert!((sample.theta[2] - theta[2]).abs() < 0.1 + 1e-9);
+        assert!((sample.theta[2] - theta[2]).abs() < 0.1 + 1e-9, "{} at {}", sample.theta[2], sample.t);
         let now = sample.energy.kinetic + sample.energy.potential;
         assert!(now < energy + 1e-4, "{now} {energy}");
         energy = now;
     }
-    assert!(run.motion.largest_drift() < 1e-4, "{}", run.motion.largest_drift());
+    // an impact is located to a step
+    assert!(run.motion.largest_drift() < 1e-2, "{}", run.motion.largest_drift());
+}
+
+#[test]
+fn the_nearest_closed_position_is_within_the_limits() {
+    let (model, theta, _) = closed_four_bar();
+    // from far: the other branch of the loop is as closed, but not as near
+    for turn in [-1.0, 0.0, 1.0, 2.5] {
+        let guess = [theta[0] + turn, theta[1], theta[2]];
+        let found = model.assemble(&guess, &["crank_pivot"]).expect("closes");
+        assert!(
+            (found[1] - guess[1]).abs() <= core::f64::consts::PI
+                && (found[2] - guess[2]).abs() <= core::f64::consts::PI
+        );
+        let rows = model.constraint_rows_at(&found, &[0.0; 3]);
+        assert!(rows.phi.amax() < 1e-11 && found[0] == guess[0]);
+    }
+    let mut robot = model.description().clone();
+    let rocker = robot.joints.iter_mut().find(|joint| joint.name == "rocker_pivot").expect("there");
+    rocker.limits.position = Some([-0.2, 0.2]); // neither branch
+    let error = robot.build().expect("sound").assemble(&[theta[0], 0.0, 0.0], &["crank_pivot"]).expect_err("a limit");
+    assert!(error.to_string().contains("`rocker_pivot` at "), "{error}");
 }
 
 #[test]

@@ -19,6 +19,8 @@ const CORRECTIONS: usize = 3;
 const AT_LIMIT: f64 = 1e-11;
 /// What is added to the diagonal of G, relative to it: rows may be redundant.
 const REGULAR: f64 = 1e-10;
+/// And relative to its largest entry: a row of a loop that holds anyway is rounding.
+const NOISE: f64 = 1e-14;
 
 /// A row whose position is to be put right.
 #[allow(clippy::large_enum_variant)] // a short list, made once a step
@@ -56,7 +58,8 @@ impl Impulses<'_> {
             }
             let J = self.jacobian(theta, open);
             let mut G = self.delassus(&J);
-            (0..G.nrows()).for_each(|r| G[(r, r)] = G[(r, r)] * (1.0 + REGULAR) + f64::MIN_POSITIVE);
+            let least = NOISE * G.diagonal().amax() + f64::MIN_POSITIVE;
+            (0..G.nrows()).for_each(|r| G[(r, r)] = G[(r, r)] * (1.0 + REGULAR) + least);
             let Some(G) = G.cholesky() else { break };
             let mut change = J.tr_mul(&G.solve(&errors));
             self.mass.divide(change.as_mut_slice());
