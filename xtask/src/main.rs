@@ -69,6 +69,7 @@ usage: cargo xtask COMMAND
           --seconds 15                                for each robot
           --install                                   let apt install clang and KDL first
           --criterion                                 each kernel alone, without peers
+          --contacts                                  steps with contacts beside MuJoCo's, into benches/CONTACTS.md
           --python                                    compare Python's calls with Pinocchio's and the Modern Robotics package's
   accuracy  measure every quantity in every way, Pinocchio and MuJoCo against numbers of 31 and 71 digits, into docs/accuracy.md
           --states 1000                               of each robot, up to a million
@@ -136,6 +137,7 @@ fn main() -> ExitCode {
         ["weigh", "--main-job"] => one("weight", || weigh::run(&workspace, true)),
         ["wheel", "--of-tests"] => one("wheel", || wheel::test(&workspace)),
         ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
+        ["bench", "--contacts"] => one("benchmarks", || bench::contacts(&workspace)),
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
         ["gpu-report", ref options @ ..] => one("GPU kernels", || gpu::report(&workspace, options)),
         ["gpu-bench", ref options @ ..] => one("GPU benchmarks", || gpu::bench(&workspace, options)),

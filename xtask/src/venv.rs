@@ -83,8 +83,8 @@ fn install(workspace: &Workspace, options: &[&str], file: &str) -> Result<(), St
     pip(workspace, &python(workspace), options, file)
 }
 
-/// Installs requirements into the environment of this interpreter: by uv, which takes seconds where pip takes minutes; by
-/// pip where uv cannot, as behind an index that only pip's settings name.
+/// Installs requirements into the environment of this interpreter: by uv, which takes seconds where pip takes minutes;
+/// by pip where uv cannot, as behind an index that only pip's settings name.
 pub fn pip(workspace: &Workspace, python: &Path, options: &[&str], file: &str) -> Result<(), String> {
     let file = workspace.path(file);
     let with = |words: &[&str]| {

@@ -143,15 +143,35 @@ pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64], is_own: boo
 
 fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contacts<'static>> {
     let file = json_file::read(name)?;
-    let list = |key: &'static str| file.value.get(key).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    if let Some(key) =
-        file.value.as_object().and_then(|all| all.keys().find(|k| !["points", "planes"].contains(&&***k)))
-    {
-        return Err(file.wrong(&[Step::Key(key)], format!("unknown `{key}`, expected points or planes")).into());
-    }
+    let list = |key: &'static str| match file.value.get(key) {
+        None => Ok(&[][..]),
+        Some(Value::Array(list)) => Ok(&list[..]),
+        Some(_) => Err(file.wrong(&[Step::Key(key)], format!("`{key}` is no list of objects"))),
+    };
+    // an object with no other keys
+    let known = |entry: &Value, path: &[Step], keys: &[&str]| -> Result<()> {
+        let expected = keys.join(", ");
+        let Some(entries) = entry.as_object() else {
+            return Err(file.wrong(path, format!("it is no object, expected one with {expected}")).into());
+        };
+        match entries.keys().find(|key| !keys.contains(&key.as_str())) {
+            None => Ok(()),
+            Some(key) => {
+                let path = [path, &[Step::Key(key)]].concat();
+                Err(file.wrong(&path, format!("unknown `{key}`, expected {expected}")).into())
+            }
+        }
+    };
+    known(&file.value, &[], &["points", "planes"])?;
+    let name_of = |entry: &Value, path: &[Step]| match entry.get("name") {
+        None => Ok(None),
+        Some(Value::String(name)) => Ok(Some(name.clone())),
+        Some(_) => Err(file.wrong(path, "`name` is no text".to_string())),
+    };
     let mut found = Contacts::default();
-    for (k, entry) in list("points").iter().enumerate() {
+    for (k, entry) in list("points")?.iter().enumerate() {
         let at = |key| [Step::Key("points"), Step::Index(k), Step::Key(key)];
+        known(entry, &at("")[..2], &["frame", "at", "radius", "friction", "restitution", "name"])?;
         let frame = entry.get("frame").and_then(Value::as_str);
         let frame =
             frame.ok_or_else(|| file.wrong(&at("frame"), "`frame` is missing, expected the name of a frame"))?;
@@ -165,7 +185,7 @@ fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contac
         };
         let radius = value("radius", 0.0)?;
         found.points.push(ContactPoint {
-            name: entry.get("name").and_then(Value::as_str).unwrap_or(frame).to_string(),
+            name: name_of(entry, &at("name"))?.unwrap_or_else(|| frame.to_string()),
             frame: model.frame(frame)?,
             center: Vec3(center),
             support: if radius == 0.0 { Support::Point } else { Support::Sphere { radius } },
@@ -173,8 +193,9 @@ fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contac
             restitution: value("restitution", restitution)?,
         });
     }
-    for (k, entry) in list("planes").iter().enumerate() {
+    for (k, entry) in list("planes")?.iter().enumerate() {
         let at = |key| [Step::Key("planes"), Step::Index(k), Step::Key(key)];
+        known(entry, &at("")[..2], &["name", "pose", "velocity"])?;
         let pose = match entry.get("pose") {
             None => SE3::identity(),
             Some(value) => {
@@ -196,13 +217,12 @@ fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contac
                 PlaneMotion::Belt(pose, Vec3(v))
             }
         };
-        let name = entry.get("name").and_then(Value::as_str).map_or_else(|| format!("plane {}", k + 1), str::to_string);
+        let name = name_of(entry, &at("name"))?.unwrap_or_else(|| format!("plane {}", k + 1));
         found.planes.push(Plane { name, motion });
     }
     Ok(found)
 }
 
 fn list_of<const K: usize>(value: &Value) -> Option<[f64; K]> {
-    let numbers: Vec<f64> = value.as_array()?.iter().filter_map(Value::as_f64).collect();
-    numbers.try_into().ok()
+    value.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?.try_into().ok()
 }

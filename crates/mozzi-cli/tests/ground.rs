@@ -85,6 +85,21 @@ fn mjcf_touches_by_its_bits_and_stands_on_its_own_planes() {
 #[test]
 fn what_is_wrong_with_contacts_is_said() {
     let cube = file(&folder("ground_wrong"), "cube.urdf", CUBE);
+    let folder = folder("ground_wrong_files");
+    for (k, (contacts, expected)) in [
+        (r#"{"points": [{"frame": "cube", "frictoin": 0.0}]}"#, "unknown `frictoin`, expected frame, at"),
+        (r#"{"points": {"frame": "cube"}}"#, "`points` is no list"),
+        (r#"{"points": [{"frame": "cube"}], "planes": "floor"}"#, "`planes` is no list"),
+        (r#"{"points": [{"frame": "cube", "at": [0, null, 0, "x", -0.5]}]}"#, "`at` is not [x, y, z]"),
+        (r#"{"points": [{"frame": "cube", "friction": 1e300}]}"#, "1e300 of contact point `cube`, expected 0 to 1e6"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let contacts = file(&folder, &format!("{k}.json"), contacts);
+        let (_, said) = complaint(&["simulate", &*cube, "--floating", "--contacts", &contacts]);
+        assert!(said.contains(expected), "{said}");
+    }
     for (flags, expected) in [
         (&["--contact", "cube"][..], "--contact has no effect without --ground or --contacts"),
         (&["--ground", "--contact", "foot"], "foot"),

@@ -1,10 +1,12 @@
 //! The benchmarks, a separate package: mozzi compared with its peers, or each kernel alone by criterion.
 
+mod contacts;
 mod options;
 mod peers;
 mod python;
 mod workshop;
 
+pub use contacts::run as contacts;
 pub use options::Options;
 pub use python::run as python;
 

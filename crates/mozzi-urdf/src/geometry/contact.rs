@@ -19,10 +19,10 @@ pub struct ShapeContacts {
 /// The coefficient of friction of a shape that has none.
 pub const FRICTION: f64 = 0.7;
 
-/// The points at which planes touch shapes, of links that move: the corners of boxes, spheres, the two ends of capsules, the
-/// rims of cylinders as discs, and the extreme vertices of meshes (STL and OBJ; of the 2,000 directions of a sphere, so
-/// at most that many). Ellipsoids are left out. All get the restitution e and the friction
-/// coefficient μ that is given, or else their own, or [`FRICTION`].
+/// The points at which planes touch shapes, of links that move: the corners of boxes, spheres, the two ends of
+/// capsules, the rims of cylinders as discs, and the extreme vertices of meshes (STL and OBJ; of the 2,000 directions
+/// of a sphere, so at most that many). Ellipsoids are left out. All get the restitution e and the friction coefficient
+/// μ that is given, or else their own, or [`FRICTION`].
 pub fn contact_points(
     model: &Model,
     shapes: &[Shape],

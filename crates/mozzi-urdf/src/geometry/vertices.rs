@@ -27,8 +27,8 @@ pub(super) fn extreme_vertices(format: &str, file: &[u8]) -> Result<Vec<Vec3>, S
 }
 
 /// The farthest of v in direction d is that of w = L⁻¹(v − v̄) in direction Lᵀd, for any L. With LLᵀ the vertices'
-/// covariance, the w are about as far from 0 in all directions, so that few, from the farthest on, need to be looked at:
-/// w·e ≤ ‖w‖‖e‖.
+/// covariance, the w are about as far from 0 in all directions, so that few, from the farthest on, need to be looked
+/// at: w·e ≤ ‖w‖‖e‖.
 fn farthest(vertices: &[Vec3]) -> Vec<Vec3> {
     let count = vertices.len() as f64;
     let mean = vertices.iter().fold(Vec3::zero(), |sum, &v| sum + v) * (1.0 / count);

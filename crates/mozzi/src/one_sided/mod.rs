@@ -141,8 +141,8 @@ fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
     most
 }
 
-/// Impulses from a guess of m numbers, whose residual is at most `tolerance`; at most 10⁴ times that where Newton's method
-/// does not give more; or the best that were found, after at most 600 iterations of the last method.
+/// Impulses from a guess of m numbers, whose residual is at most `tolerance`; at most 10⁴ times that where Newton's
+/// method does not give more; or the best that were found, after at most 600 iterations of the last method.
 ///
 /// # Panics
 /// When the guess is not m long.

@@ -2,9 +2,9 @@
 //!
 //! > (F'(p) + ε)(p⁺ − p) = −F(p) − ε(p − p̄)
 //!
-//! p̄ are the best admissible impulses so far, so that the term vanishes at a solution, and impulses that are not unique
-//! stay where they were. p is not projected between the steps: Newton's method is one on all p. Only Π(p) is offered as
-//! a result. Rows are scaled to a G of about 1 on the diagonal.
+//! p̄ are the best admissible impulses so far, so that the term vanishes at a solution, and impulses that are not
+//! unique stay where they were. p is not projected between the steps: Newton's method is one on all p. Only Π(p) is
+//! offered as a result. Rows are scaled to a G of about 1 on the diagonal.
 
 use super::law::norm;
 use super::scaled::Scaled;

@@ -1,5 +1,5 @@
-//! A problem whose blocks have a G of about 1 on the diagonal: rows in rad/s and in m/s, of light and of heavy links, are
-//! then alike. The factors are powers of two, so that nothing is rounded.
+//! A problem whose blocks have a G of about 1 on the diagonal: rows in rad/s and in m/s, of light and of heavy links,
+//! are then alike. The factors are powers of two, so that nothing is rounded.
 
 use super::{Law, Problem, residual_with};
 use alloc::vec::Vec;

@@ -14,6 +14,9 @@ use alloc::vec::Vec;
 /// A start may be this far within a plane, m: it is put right in the first step.
 const DEEPEST: f64 = 1e-3;
 
+/// The largest coefficient of friction: cones beyond it are half-spaces to rounding.
+const LARGEST_MU: f64 = 1e6;
+
 /// A point, or a rounded end, of a robot that planes stop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPoint {
@@ -281,7 +284,8 @@ impl Contacts<'_> {
         for ContactPoint { name, frame, center, support, mu, restitution } in &self.points {
             let says = |what: &str| format!("{what} of contact point `{name}`");
             check(frame.0 < frames, "the frame of a contact point", says("that"), "a frame of this model")?;
-            check(*mu >= 0.0 && mu.is_finite(), "the coefficient of friction", says(&format!("{mu}")), "at least 0")?;
+            let is_friction = (0.0..=LARGEST_MU).contains(mu);
+            check(is_friction, "the coefficient of friction", says(&format!("{mu:e}")), "0 to 1e6")?;
             let is_ratio = (0.0..=1.0).contains(restitution);
             check(is_ratio, "the coefficient of restitution", says(&format!("{restitution}")), "0 to 1")?;
             let (radius, axis) = match *support {

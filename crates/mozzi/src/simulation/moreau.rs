@@ -73,8 +73,8 @@ impl Moreau {
         Moreau { joints: [stiffness, model.damping.clone()], gains: zeros(), implicit: zeros() }
     }
 
-    /// A step of h seconds: in parts of half the length, and so on, where its iteration does not contract, or a loop does
-    /// not close.
+    /// A step of h seconds: in parts of half the length, and so on, where its iteration does not contract, or a loop
+    /// does not close.
     pub fn step<I: Input>(
         &mut self,
         driven: &mut Driven<'_, I>,

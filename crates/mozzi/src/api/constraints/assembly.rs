@@ -22,10 +22,10 @@ const TURN: f64 = 2.0 * core::f64::consts::PI;
 const STARTS: usize = 24;
 
 impl Model<f64> {
-    /// θ near a guess at which the constraints hold, φ(θ) = 0, while the joints named in `hold` keep their positions: the
-    /// nearest that is found within the limits, with angles within ± π of the guess. By Levenberg and Marquardt's method
-    /// in steps of at most 45°, from the guess, and from where the loops close with all joints free, along a straight
-    /// way of the held joints; if neither is within the limits, from starts around the guess.
+    /// θ near a guess at which the constraints hold, φ(θ) = 0, while the joints named in `hold` keep their positions:
+    /// the nearest that is found within the limits, with angles within ± π of the guess. By Levenberg and Marquardt's
+    /// method in steps of at most 45°, from the guess, and from where the loops close with all joints free, along a
+    /// straight way of the held joints; if neither is within the limits, from starts around the guess.
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::Unreachable`] with the constraint of the largest

@@ -275,8 +275,8 @@ impl<'r> Impulses<'r> {
         self.set_forces(system, &(&solved.p / h));
     }
 
-    /// Contacts that came, and go at the end of the step, touched within it: after t_c = gap/|u_n|, and are (h − t_c)u_n⁺
-    /// away at its end.
+    /// Contacts that came, and go at the end of the step, touched within it: after t_c = gap/|u_n|, and are (h −
+    /// t_c)u_n⁺ away at its end.
     fn note_rebounds(&mut self, system: &System, solved: &Solved, h: f64) {
         self.memory.rebounds.clear();
         for &(key, first, _) in &system.rows {

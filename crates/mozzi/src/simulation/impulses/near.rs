@@ -51,8 +51,8 @@ impl Cloud {
 }
 
 impl Impulses<'_> {
-    /// The pairs of a point and a plane within reach at θ, or at the robot's next configuration at the time `then`; with
-    /// their touch at θ. Those of a frame follow each other.
+    /// The pairs of a point and a plane within reach at θ, or at the robot's next configuration at the time `then`;
+    /// with their touch at θ. Those of a frame follow each other.
     pub fn near(&self, [t, then]: [f64; 2], theta: &[f64], next: &[f64]) -> Vec<(usize, usize, Touch)> {
         let (now, later) = (self.surfaces(t), self.surfaces(then));
         let mut found = Vec::new();

@@ -85,9 +85,9 @@ impl Impulses<'_> {
         u
     }
 
-    /// The rows of a step of h seconds with the middle (t, θ), for the joints with dry friction that are not `sliding` and
-    /// for what is near, on the way from the start (θ, θ̇) to the next θ without impulses. `diagonal` is added to the diagonal of M, which stays
-    /// factored.
+    /// The rows of a step of h seconds with the middle (t, θ), for the joints with dry friction that are not `sliding`
+    /// and for what is near, on the way from the start (θ, θ̇) to the next θ without impulses. `diagonal` is added to
+    /// the diagonal of M, which stays factored.
     pub fn system(
         &mut self,
         t: f64,
