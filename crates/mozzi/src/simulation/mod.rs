@@ -11,14 +11,14 @@
 //! | `Euler`, `SemiImplicitEuler`, `RungeKutta4` | 1, 1, 4 | fixed | the book's loop; real time |
 //! | `DormandPrince` | 5 | adaptive | smooth motions, to a tolerance |
 //! | `Midpoint` | 2 | fixed | long motions: the energy's error is bounded |
-//! | `MoreauJean` | 2 | fixed | dry friction, stops, contacts; `Automatic` chooses it for them, else `RungeKutta4` |
+//! | `MoreauJean` | 2 | fixed | dry friction, stops, contacts: `Automatic` is it for them, else `RungeKutta4` |
 //!
 //! A robot with [constraints](crate::constraints) moves by its constrained forward dynamics, and is brought back onto
 //! the constraints after each step: [`Ending::closing`] reports by how much.
 //!
 //! Dry friction, stops and contacts are solved for as impulses of a step ([`one_sided`](crate::one_sided)), by
-//! `MoreauJean` alone; other methods are for smooth motions, and refuse them. A step ends where a joint with dry friction
-//! comes to rest. [`Ending::one_sided`] reports the residuals.
+//! `MoreauJean` alone; other methods are for smooth motions, and refuse them. A step ends where a joint with dry
+//! friction comes to rest. [`Ending::one_sided`] reports the residuals.
 //!
 //! Gradients of a loss through N steps, by start, torques and parameters: [`Rollout`].
 //!
