@@ -108,8 +108,8 @@ impl PyModel {
     ///     (..., n).
     /// method : {'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
     ///     How a step is taken. 'auto' is 'moreau' if there is dry friction, a contact or a limit to respect, else
-    ///     'rk4'. 'moreau' is Moreau and Jean's step for one-sided forces, which the others refuse. 'dopri', of order 5,
-    ///     finds its steps by a tolerance; 'midpoint' is implicit and symplectic: the energy's error stays bounded.
+    ///     'rk4'. 'moreau' is Moreau and Jean's step for one-sided forces, which the others refuse. 'dopri', of order
+    ///     5, finds its steps by a tolerance; 'midpoint' is implicit and symplectic: the energy's error stays bounded.
     /// tolerance : float or None
     ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇; 1e-9 if
     ///     none is given.
