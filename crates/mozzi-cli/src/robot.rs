@@ -1,7 +1,7 @@
 //! The robot that a command is about.
 
 use crate::failure::{self, Failure, Result};
-use crate::numbers::array;
+use crate::numbers::{array, number};
 use crate::xacro_arguments::XacroArguments;
 use crate::{input, robot_json};
 use clap::Args;
@@ -141,7 +141,8 @@ pub struct RobotArguments {
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
     #[arg(long, value_name = "FRAME", visible_alias = "frame")]
     pub end_effector: Option<String>,
-    /// Gravity in {s} (the frame of a fixed base), m/s² [default: the robot's own, else 0,0,-9.81]
+    /// Gravity in {s} (the frame of a fixed base), m/s²; one number points down, and earth, moon, mars and none are known
+    /// [default: the robot's own, else 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Print one JSON object with all digits instead of text
@@ -149,6 +150,17 @@ pub struct RobotArguments {
     pub json: bool,
     #[command(flatten)]
     policy: PolicyArguments,
+}
+
+/// Three numbers, or one that points down, or the body on whose surface it is.
+fn gravity(text: &str) -> Result<[f64; 3]> {
+    const BODIES: [(&str, f64); 4] = [("earth", 9.81), ("moon", 1.62), ("mars", 3.72), ("none", 0.0)];
+    let down = |size: f64| [0.0, 0.0, -size];
+    match BODIES.iter().find(|(name, _)| *name == text.trim()) {
+        Some((_, size)) => Ok(down(*size)),
+        None if !text.contains(',') => Ok(down(number("--gravity", text)?)),
+        None => array("--gravity", text, ["x", "y", "z"]),
+    }
 }
 
 impl RobotArguments {
@@ -165,7 +177,7 @@ impl RobotArguments {
     fn under_gravity(&self, model: Model) -> Result<Model> {
         match &self.gravity {
             None => Ok(model),
-            Some(text) => Ok(model.with_gravity(array("--gravity", text, ["x", "y", "z"])?)?),
+            Some(text) => Ok(model.with_gravity(gravity(text)?)?),
         }
     }
 

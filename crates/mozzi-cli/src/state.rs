@@ -10,10 +10,10 @@ use mozzi::{Environment, FrameId, Model, Wrench};
 pub struct StartArguments {
     /// Positions θ, rad or m, a floating base's pose first; or the name of a state [default: the robot's start,
     /// else joints at 0 and a floating base at {s}]
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "q", value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     pub theta: Option<String>,
     /// Velocities θ̇, rad/s or m/s; a floating base's twist first, in its own coordinates [default: all 0]
-    #[arg(long, value_name = "θ̇1,θ̇2,…", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "qd", value_name = "θ̇1,θ̇2,…", allow_hyphen_values = true)]
     pub dtheta: Option<String>,
     /// Take θ and θ̇ from a named state of the robot's file, such as a keyframe; `mozzi info` lists them
     #[arg(long, value_name = "NAME", conflicts_with_all = ["theta", "dtheta"])]
@@ -43,7 +43,7 @@ pub struct MotionArguments {
     #[command(flatten)]
     start: StartArguments,
     /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
-    #[arg(long, value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "qdd", value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
     ddtheta: Option<String>,
     /// Joint forces τ, N m or N, instead of θ̈, which is then computed
     #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]

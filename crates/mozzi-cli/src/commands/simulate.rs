@@ -42,7 +42,7 @@ pub struct SimulateArguments {
     #[arg(long, default_value = "auto")]
     method: Way,
     /// Step size, s; dopri: the time between two rows
-    #[arg(long, value_name = "SECONDS", default_value = "0.001", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.001", allow_hyphen_values = true)]
     step: String,
     /// dopri only: tolerance on the local error
     #[arg(long, value_name = "EPS", default_value = "1e-9", allow_hyphen_values = true)]

@@ -93,6 +93,13 @@ impl<'a> Model<'a> {
                 cx.findings.add(item.error("unclear_limit", range, &message).help(help));
                 None
             }
+            "true" if numbers.is_some_and(|[low, high]| low >= high) => {
+                let message = format!("is limited, but its `{range}` is empty, which MuJoCo refuses");
+                cx.findings.add(item.error("reversed_limits", range, &message));
+                None
+            }
+            // as in MuJoCo: an empty range of its own accord is no limit
+            "auto" => numbers.filter(|[low, high]| low != high),
             _ => numbers,
         }
     }

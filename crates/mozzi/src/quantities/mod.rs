@@ -22,7 +22,7 @@ mod query;
 pub use crate::quantity::*;
 pub(crate) use crate::quantity::{Entry, Inputs, Outputs, evaluate};
 pub(crate) use compute::are_clear;
-pub use query::Query;
+pub use query::{ALIASES, Query};
 
 use crate::model::{Environment, Model};
 use crate::scalar::Scalar;

@@ -9,6 +9,32 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
+/// Names of quantities besides their own: the book's symbols, and those of Featherstone and of Pinocchio.
+pub const ALIASES: [(&str, &str); 22] = [
+    ("M", "mass_matrix"),
+    ("crba", "mass_matrix"),
+    ("M_inv", "mass_matrix_inverse"),
+    ("dM", "mass_matrix_rate"),
+    ("C", "coriolis_matrix"),
+    ("c", "velocity_product"),
+    ("g", "gravity_forces"),
+    ("h", "bias_forces"),
+    ("nle", "bias_forces"),
+    ("tau", "inverse_dynamics"),
+    ("rnea", "inverse_dynamics"),
+    ("id", "inverse_dynamics"),
+    ("ddtheta", "forward_dynamics"),
+    ("aba", "forward_dynamics"),
+    ("fd", "forward_dynamics"),
+    ("T", "forward_kinematics"),
+    ("fk", "forward_kinematics"),
+    ("J_b", "body_jacobian"),
+    ("J_s", "space_jacobian"),
+    ("Lambda", "task_space_dynamics"),
+    ("com", "center_of_mass"),
+    ("jacobian", "body_jacobian"),
+];
+
 /// A quantity to compute, with the frame, task or point that it refers to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Query<'a> {
@@ -35,12 +61,13 @@ impl<'a> Query<'a> {
         Query { index, subject: Subject { frame: None, coordinates, rows, point: Vec3([0.0; 3]) } }
     }
 
-    /// The quantity of this name, with `_` or `-` between its words.
+    /// The quantity of this name, with `_` or `-` between its words, or of one of the [`ALIASES`].
     ///
     /// # Errors
     /// [`Error::NoSuchQuantity`] with the names that exist.
     pub fn named(name: &str) -> Result<Query<'static>, Error> {
-        let plain = name.replace('-', "_");
+        let alias = ALIASES.iter().find(|(alias, _)| *alias == name).map(|(_, meant)| *meant);
+        let plain = alias.unwrap_or(name).replace('-', "_");
         let place = LIST.iter().position(|known| known.name == plain);
         let known = || LIST.iter().map(|known| known.name).collect();
         place.map(Query::at).ok_or_else(|| Error::NoSuchQuantity { name: String::from(name), known: known() })
