@@ -202,11 +202,11 @@ fn a_cart_that_dry_friction_stops_is_no_stall() {
     let robot = file(&folder, "slide.urdf", slide);
     // the slope pulls with 2 · 9.81 · 0.6 = 11.8 N, friction with 15 N: v²/(2a) = 0.5²/(2 (15 − 11.772)/2) = 0.0775 m
     // down the slope, or up it 0.0093 m, and then it sticks; it made adaptive steps stall
-    let start = ["simulate", &robot, "--method", "dopri", "--dtheta", "0.5"];
+    let start = ["simulate", &robot, "--dtheta", "0.5"];
     let found = mozzi(&start);
     let said = String::from_utf8_lossy(&found.stdout).into_owned();
     assert!(found.status.success() && said.contains("0.009338"), "{said}");
-    assert!(mozzi(&[&start[..], &["--slip-speed", "0.01"]].concat()).status.success());
+    assert!(mozzi(&[&start[..], &["--method", "dopri", "--slip-speed", "0.01"]].concat()).status.success());
 }
 
 #[test]

@@ -281,7 +281,8 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
     for robot in robots {
         assert!(robot["trouble"] == false && robot["time"].as_f64() > Some(0.1), "{robot}");
         assert!(robot["residual"].as_f64().is_some_and(|x| x < 1e-9), "{robot}");
-        assert!(robot["drift"].as_f64().is_some_and(|x| x.abs() < 1e-3), "{robot}");
+        // an impact against a stop is located to a step
+        assert!(robot["drift"].as_f64().is_some_and(|x| x.abs() < 2e-2), "{robot}");
     }
 }
 

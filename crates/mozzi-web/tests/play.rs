@@ -137,7 +137,8 @@ fn steps_are_the_simulations() {
         play(robot, json!({ "do": "set", "motors": motors, "omega": 5, "zeta": 1, "reset": true }));
         let answer = play(robot, json!({ "do": "step", "step": 0.001, "steps": 50 }));
         let model = robot.model().clone();
-        let options = Options { method: Method::RungeKutta4, ..Options::new(0.05, 50) };
+        let joint_limits = mozzi::simulation::Policy::Respect;
+        let options = Options { method: Method::RungeKutta4, joint_limits, ..Options::new(0.05, 50) };
         let run = match motors {
             "off" => Simulation::new(options).run(&model, &theta, &dtheta, Zero),
             _ => Simulation::new(options).run(&model, &theta, &dtheta, GravityCompensation::new(&model)),

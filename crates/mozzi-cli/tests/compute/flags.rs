@@ -71,12 +71,28 @@ fn wrenches_have_a_frame_and_six_numbers() {
 }
 
 #[test]
-fn an_unknown_quantity_lists_what_there_is() {
+fn quantities_have_the_names_that_people_know() {
+    let theta = "--theta=0.1,-1,1.2,0.3,-0.4,0.5";
+    for (alias, name) in
+        [("M", "mass-matrix"), ("crba", "mass_matrix"), ("g", "gravity-forces"), ("fk", "forward-kinematics")]
+    {
+        let of = |name: &str| text(&["compute", "ur5", name, theta, "--json"]);
+        assert_eq!(of(alias), of(name), "{alias}");
+    }
+    let of = |flags: [&str; 2]| text(&["compute", "ur5", "rnea", flags[0], "--json", flags[1]]);
+    let degrees = of(["--q=90deg,-pi/4,0,0,0,0", "--gravity=1.62"]);
+    let radians = of(["--theta=1.5707963267948966,-0.7853981633974483,0,0,0,0", "--gravity=moon"]);
+    assert_eq!(degrees, radians);
+}
+
+#[test]
+fn an_unknown_quantity_names_what_is_near() {
     let (code, message) = complaint(&["compute", "ur5", "mass-matrx"]);
     assert_eq!(code, 2, "{message}");
-    for words in ["'mass-matrx'", "a similar value exists: 'mass-matrix'", "inverse-dynamics, forward-dynamics,"] {
+    for words in ["'mass-matrx'", "a similar value exists: 'mass-matrix'", "`mozzi compute --list` shows all"] {
         assert!(message.contains(words), "{words} in {message}");
     }
+    assert!(message.lines().count() < 12, "{message}");
     wrong(&["panda", "body-jacobian"], "the end effector must be named");
     wrong(&["ur5", "task-space-dynamics", "--task", "vw"], "--task: there is no row `vw`");
     wrong(&["ur5", "momentum", "--about", "1,2"], "--about has 2 entries, expected 3: x, y, z");

@@ -204,6 +204,8 @@ mod tests {
             (Purpose::Collision, Form::Box { size: [1.0, 2.0, 4.0] }),
             (Purpose::Visual, Form::Ellipsoid { radii: [1.0, 2.0, 3.0] }),
             (Purpose::Visual, hand),
+            // transparent: not drawn, and touched all the same
+            (Purpose::Collision, Form::Sphere { radius: 1.0 }),
         ];
         assert_eq!(forms, expected);
         assert!(shapes.iter().all(|shape| shape.link == "arm"));
@@ -215,7 +217,7 @@ mod tests {
         // with a free body as the base, the world's shapes are not drawn
         let free = FIGURE.replace("<joint type=\"hinge\" axis=\"0 1 0\"/>", "<freejoint/>");
         let shapes = parse("figure.xml", free).shapes;
-        assert!(shapes.len() == 4 && shapes.iter().all(|shape| shape.link == "arm"));
+        assert!(shapes.len() == 5 && shapes.iter().all(|shape| shape.link == "arm"));
     }
 
     #[test]
