@@ -44,7 +44,14 @@ fn flag(Input { name, symbol, unit, about, dim }: Input) -> Arg {
     let unit = if unit == "any" { "of any unit" } else { unit };
     let help = format!("{symbol}, {about}, {unit}{of_base} [default: {default}]");
     let entries = format!("{symbol}1,{symbol}2,…");
-    Arg::new(name).long(name).value_name(entries).help(help).allow_hyphen_values(true).conflicts_with("input")
+    let argument =
+        Arg::new(name).long(name).value_name(entries).help(help).allow_hyphen_values(true).conflicts_with("input");
+    match name {
+        "theta" => argument.visible_alias("q"),
+        "dtheta" => argument.visible_alias("qd"),
+        "ddtheta" => argument.visible_alias("qdd"),
+        _ => argument,
+    }
 }
 
 impl FromArgMatches for InputArguments {

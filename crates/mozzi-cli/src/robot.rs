@@ -141,8 +141,8 @@ pub struct RobotArguments {
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
     #[arg(long, value_name = "FRAME", visible_alias = "frame")]
     pub end_effector: Option<String>,
-    /// Gravity in {s} (the frame of a fixed base), m/s²; one number points down, and earth, moon, mars and none are known
-    /// [default: the robot's own, else 0,0,-9.81]
+    /// Gravity in {s} (the frame of a fixed base), m/s²; one number points down, and earth, moon, mars and none are
+    /// known [default: the robot's own, else 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Print one JSON object with all digits instead of text
