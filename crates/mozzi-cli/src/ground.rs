@@ -47,10 +47,11 @@ impl GroundArguments {
         if let Some(file) = &self.contacts {
             found = read(file, model, coefficients)?;
         }
-        let shapes = if robot.model == "-" {
-            Geometry::default()
-        } else {
-            geometry_with(&robot.model, &robot.settings().xacro)?
+        // a file's own points and planes need no shapes; standard input has been read already
+        let needs_shapes = robot.model != "-" && (self.ground || found.points.is_empty());
+        let shapes = match needs_shapes {
+            true => geometry_with(&robot.model, &robot.settings().xacro)?,
+            false => Geometry::default(),
         };
         if self.ground && !shapes.planes.is_empty() {
             let plane = |(name, T): &(String, SE3)| Plane::fixed(name.clone(), *T);
@@ -92,12 +93,10 @@ impl GroundArguments {
         if !self.contact.is_empty() {
             return self.contact.iter().map(|name| of_frame(name)).collect();
         }
-        if robot.model != "-" {
-            let found = contact_points(model, shapes, Path::new(&robot.model), None, (given, restitution));
-            found.left_out.iter().for_each(|reason| failure::note(&format!("--ground: {reason}")));
-            if !found.points.is_empty() {
-                return Ok(found.points);
-            }
+        let found = contact_points(model, shapes, Path::new(&robot.model), None, (given, restitution));
+        found.left_out.iter().for_each(|reason| failure::note(&format!("--ground: {reason}")));
+        if !found.points.is_empty() {
+            return Ok(found.points);
         }
         let description = model.description();
         let is_end = |name: &str| !description.joints.iter().any(|joint| joint.parent == name);

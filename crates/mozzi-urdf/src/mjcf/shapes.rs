@@ -161,7 +161,7 @@ impl<'a> Model<'a> {
     }
 }
 
-/// Does MuJoCo test it against a plane with the default bits, contype = conaffinity = 1?
+/// Whether the geom collides in MuJoCo with a plane whose contype and conaffinity are 1, the defaults.
 fn touches(item: &Item, cx: &mut Context) -> bool {
     let has_bit = |name, cx: &mut Context| (item.number(name, 1.0, cx) as i64) & 1 == 1;
     has_bit("contype", cx) | has_bit("conaffinity", cx)

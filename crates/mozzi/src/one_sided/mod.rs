@@ -121,7 +121,7 @@ pub fn residual(problem: &Problem, p: &DVector<f64>) -> f64 {
     Scaled::new(problem, p).residual
 }
 
-/// The same of a problem whose g is 1, times the factor of each row.
+/// The natural residual of a scaled problem, in which g is 1. Each row's error is multiplied by its factor.
 fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
     let u = problem.velocity(p);
     let (mut most, mut x) = (0.0_f64, [0.0; 3]);

@@ -14,7 +14,7 @@ pub(super) struct Scaled {
     /// √g of each row, to the next power of two.
     root: Vec<f64>,
     pub best: DVector<f64>,
-    /// Of the best, in the velocities of the problem that was given.
+    /// The residual of `best`, as a velocity of the problem before scaling.
     pub residual: f64,
 }
 

@@ -53,10 +53,10 @@ pub(super) struct Phase {
 }
 
 /// A step that may count.
-pub(super) struct Trial {
+struct Trial {
     h: f64,
-    pub system: System,
-    pub solved: Solved,
+    system: System,
+    solved: Solved,
     to: Phase,
     /// Did θ̇⁺ converge?
     settles: bool,
@@ -199,7 +199,7 @@ impl Moreau {
     }
 
     /// A step of h seconds that may count; `sliding` joints keep their full dry friction.
-    pub fn trial<I: Input>(
+    fn trial<I: Input>(
         &self,
         equation: &mut Equation<'_, I>,
         impulses: &mut Impulses<'_>,

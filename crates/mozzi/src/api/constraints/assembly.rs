@@ -99,7 +99,7 @@ impl Model<f64> {
         residual.max(self.close(theta, free))
     }
 
-    /// The same position, with angles within ± π of the guess.
+    /// Subtracts whole turns from revolute joints, so that each angle is within ± π of the guess.
     fn unwound(&self, theta: Vec<f64>, guess: &[f64]) -> Vec<f64> {
         let mut near = theta.clone();
         for (name, place) in self.joint_names().zip(self.places()) {

@@ -20,6 +20,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use near::Cloud;
+use rows::Touching;
 
 /// The residual that is sought, relative to the largest of the velocities b, or to this.
 const TOLERANCE: f64 = 1e-12;
@@ -33,7 +34,7 @@ const NEAR: f64 = 1e-8;
 /// An impact rebounds if it is faster than this many times what the contact gains in the step without contact forces: a
 /// loaded foot would else jump for ever.
 const REBOUND: f64 = 4.0;
-/// What stuck slides above this speed, and what slid sticks below the other, m/s: for events.
+/// A contact that stuck is reported to slide above the first speed, one that slid to stick below the second, m/s.
 const SLIDES: f64 = 1e-6;
 const STICKS: f64 = 1e-9;
 
@@ -56,7 +57,7 @@ pub(super) struct Impulses<'r> {
     pub mass: FactoredMass<'r>,
 }
 
-/// What one step leaves to the next.
+/// The state that a step passes to the next one.
 #[derive(Clone, Default)]
 pub(super) struct Memory {
     /// The forces of the last step, in the order of their keys.
@@ -93,8 +94,8 @@ pub(super) struct Solved {
     pub residual: f64,
 }
 
-/// Does a contact slide at both ends of a step, in about the same direction? Its friction is then opposite to the mean
-/// of its velocities, which is of second order; only the direction counts, so the mean's law is that of b_t + u_t.
+/// Whether a contact slides before and after the step in about the same direction. Its friction is then opposite to the
+/// mean of its velocities, which is of second order; only the direction counts, so the mean's law is that of b_t + u_t.
 fn slides_throughout(law: Law, first: usize, p: &DVector<f64>, before: &DVector<f64>, after: &DVector<f64>) -> bool {
     let Law::Contact { .. } = law else { return false };
     let product = |a: &DVector<f64>, b: &DVector<f64>| a[first + 1] * b[first + 1] + a[first + 2] * b[first + 2];
@@ -109,7 +110,7 @@ fn slip(u: &DVector<f64>, first: usize) -> f64 {
 }
 
 impl Solved {
-    /// Of a system without rows.
+    /// The solution of a system without rows.
     pub fn none() -> Self {
         let none = || DVector::zeros(0);
         Solved { p: none(), before: none(), free: none(), u: none(), residual: 0.0 }
@@ -279,15 +280,11 @@ impl<'r> Impulses<'r> {
     /// t_c)u_n⁺ away at its end.
     fn note_rebounds(&mut self, system: &System, solved: &Solved, h: f64) {
         self.memory.rebounds.clear();
-        for &(key, first, _) in &system.rows {
-            let (Key::Contact(point, plane), Some(touch)) = (key, system.touches.iter().find(|(k, ..)| *k == key))
-            else {
-                continue;
-            };
+        for &Touching { pair, first, gap, .. } in &system.touches {
             let (comes, goes) = (solved.before[first], solved.u[first]);
             if comes < 0.0 && goes > 0.0 && solved.p[first] > 0.0 {
-                let touches = ((touch.2 - 0.5 * h * comes) / -comes).clamp(0.0, h);
-                self.memory.rebounds.insert((point, plane), (h - touches) * goes);
+                let touches = ((gap - 0.5 * h * comes) / -comes).clamp(0.0, h);
+                self.memory.rebounds.insert(pair, (h - touches) * goes);
             }
         }
     }
@@ -321,10 +318,8 @@ impl<'r> Impulses<'r> {
     }
 
     /// The contact forces in {s}, from those along the rows.
-    pub fn set_forces(&mut self, system: &System, force: &DVector<f64>) {
-        for &(key, axes, _) in &system.touches {
-            let row = system.rows.iter().find(|(other, ..)| *other == key);
-            let (Key::Contact(point, plane), Some(&(_, first, _))) = (key, row) else { continue };
+    fn set_forces(&mut self, system: &System, force: &DVector<f64>) {
+        for &Touching { pair: (point, plane), first, axes, .. } in &system.touches {
             let total = axes[0] * force[first] + axes[1] * force[first + 1] + axes[2] * force[first + 2];
             let pair = point * self.contacts.planes.len() + plane;
             self.forces[3 * pair..3 * pair + 3].copy_from_slice(&total.0);

@@ -17,7 +17,7 @@ const CLOSED: f64 = 1e-13;
 const CORRECTIONS: usize = 3;
 /// Joints this near to a limit are at it, rad or m.
 const AT_LIMIT: f64 = 1e-11;
-/// What is added to the diagonal of G, relative to it: rows may be redundant.
+/// G is made regular by adding this part of its diagonal, because rows may be redundant.
 const REGULAR: f64 = 1e-10;
 /// And relative to its largest entry: a row of a loop that holds anyway is rounding.
 const NOISE: f64 = 1e-14;

@@ -37,8 +37,19 @@ pub(in crate::simulation) struct System {
     pub w: DVector<f64>,
     /// J M⁻¹Jᵀ
     pub G: DMatrix<f64>,
-    /// n, t₁ and t₂ of the contacts, and their gaps.
-    pub touches: Vec<(Key, [Vec3; 3], f64)>,
+    pub touches: Vec<Touching>,
+}
+
+/// A contact of a system.
+pub(in crate::simulation) struct Touching {
+    /// The contact point and the plane.
+    pub pair: (usize, usize),
+    /// Its first row.
+    pub first: usize,
+    /// n, t₁ and t₂ in {s}.
+    pub axes: [Vec3; 3],
+    /// The distance at the middle of the step, m.
+    pub gap: f64,
 }
 
 impl System {
@@ -130,13 +141,14 @@ impl Impulses<'_> {
         for (point, plane, touch) in self.near([t, t + 0.5 * h], theta, next) {
             let key = Key::Contact(point, plane);
             let of = &self.contacts.points[point];
-            blocks.push((key, w.len(), Law::Contact { mu: of.mu }));
+            let first = w.len();
+            blocks.push((key, first, Law::Contact { mu: of.mu }));
             self.columns(theta, of.frame, &mut columns);
             for k in 0..3 {
                 rows.extend(point_row(&columns.1, &touch, touch.axes[k]).iter());
                 w.push(touch.speeds[k]);
             }
-            touches.push((key, touch.axes, touch.gap));
+            touches.push(Touching { pair: (point, plane), first, axes: touch.axes, gap: touch.gap });
         }
         self.mass.factor(theta, 1.0, diagonal)?;
         let J = DMatrix::from_row_slice(w.len(), n, &rows);
