@@ -4,9 +4,9 @@ use crate::failure::{Failure, Result};
 use crate::json_file;
 use crate::robot::RobotArguments;
 use mozzi::Model;
-use mozzi::simulation::Input;
 use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
 use mozzi_motion::trajectories::Reference;
+use mozzi_sim::Input;
 use mozzi_urdf::json::{File, Step, unknown_key};
 use serde_json::Value;
 

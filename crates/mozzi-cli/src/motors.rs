@@ -7,10 +7,10 @@ use crate::robot::RobotArguments;
 use crate::tables::read as table_file;
 use crate::tables::samples::Samples;
 use clap::{Args, ValueEnum};
-use mozzi::simulation::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 use mozzi::{Base, Model, Wrench};
 use mozzi_motion::Policy;
 use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
+use mozzi_sim::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 
 #[derive(Args, Debug)]
 pub struct MotorArguments {
@@ -137,7 +137,7 @@ impl MotorArguments {
         let tip = model.end_effector()?;
         if !std::path::Path::new(text).exists() && text.contains(',') {
             let F = Wrench::from_array(array("--tip-wrench", text, WRENCH)?);
-            return Ok(Box::new(simulation::applied(tip, move |_, _, _| F)));
+            return Ok(Box::new(mozzi_sim::applied(tip, move |_, _, _| F)));
         }
         let samples = table_file::read(text, model)?;
         let values = samples.need("wrench", model)?.to_vec();

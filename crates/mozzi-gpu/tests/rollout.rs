@@ -5,11 +5,11 @@ use crate::common;
 
 use common::host::{self, Call, exists, run};
 use common::{LAYOUTS, PRECISIONS, embedded, error, nvrtc, transposed};
-use mozzi::simulation::{Method, Rollout};
 use mozzi::testing::{Random, four_bar, state};
 use mozzi::{Base, Model};
 use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Arch, Source};
+use mozzi_sim::{Method, Rollout};
 
 const ROBOTS: usize = 37;
 const STEPS: usize = 12;

@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p mozzi-motion --example reach [POSES]`
 
-use mozzi::testing::Random;
+use mozzi::random::Random;
 use mozzi::{Model, forward_kinematics};
 use mozzi_motion::inverse_kinematics::{Method, Options};
 use mozzi_motion::{Goal, InverseKinematics};

@@ -2,11 +2,11 @@
 //! ([`pictures`]).
 //!
 //! ```
-//! use mozzi::simulation::{Options, Zero};
+//! use mozzi_sim::{Options, Zero};
 //! use mozzi_report::{Drawing, Meshes, Motion};
 //!
 //! let model = mozzi_urdf::open("ur5")?.build()?;
-//! let fall = model.simulate(&[0.0, -1.2, 1.5, 0.3, 1.1, 0.0], &[0.0; 6], Zero, &Options::new(0.2, 200))?;
+//! let fall = mozzi_sim::simulate(&model, &[0.0, -1.2, 1.5, 0.3, 1.1, 0.0], &[0.0; 6], Zero, &Options::new(0.2, 200))?;
 //! let drawing = Drawing::of_file("ur5", Meshes::Visual)?;
 //! let page = mozzi_report::html(&model, &drawing, Some(&Motion::simulated("let go", &fall)))?;
 //! assert!(page.starts_with("<!doctype html>") && page.contains("ur5, let go"));

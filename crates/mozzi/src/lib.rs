@@ -24,10 +24,9 @@
 //!   functions of [`dynamics`] and [`kinematics`], kernels on slices, generic over the number type, without allocation;
 //!   or [`fast`], the kernels on `f64` with the machine's instruction set, for control loops.
 //! - The book's intermediate results: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
-//! - Simulation: [`simulation`].
+//! - Simulation: the crate `mozzi-sim`.
 //! - Derivatives: along any direction, [`Model::directional_derivative`]; with respect to a robot's parameters,
-//!   [`Model::with_parameter_tangent`]; the regressor, [`Model::regressor`]; of a simulation step,
-//!   [`Model::step_sensitivity`].
+//!   [`Model::with_parameter_tangent`]; the regressor, [`Model::regressor`].
 //! - Conversions to and from Pinocchio and MuJoCo: [`conventions`].
 //!
 //! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. Applied wrenches are those of the robot on
@@ -46,13 +45,12 @@ pub mod kinematics;
 pub mod lie;
 pub mod linalg;
 pub mod model;
-pub mod one_sided;
 pub mod quantities;
 mod quantity;
 pub mod random;
 pub mod scalar;
-pub mod simulation;
 pub mod spatial;
+#[cfg(any(test, feature = "testing"))]
 pub mod testing;
 mod workspace;
 
@@ -72,7 +70,6 @@ pub use model::{
 };
 pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};
-pub use simulation::Trajectory;
 pub use spatial::solids::Solid;
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 pub use workspace::Workspace;

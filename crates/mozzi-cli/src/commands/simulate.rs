@@ -18,16 +18,15 @@ use crate::text::scalar;
 use crate::workload::{BINARY, TEXT, Workload};
 use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
+use mozzi::Model;
 use mozzi::model::Bounds;
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{
-    Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned,
-};
-use mozzi::{Model, Trajectory};
 use mozzi_engine::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};
 use mozzi_motion::trajectories::Hold;
 use mozzi_report::{Motion, Touches};
+use mozzi_sim::Trajectory;
+use mozzi_sim::{Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned};
 use std::ops::ControlFlow;
 
 #[derive(Args, Debug)]

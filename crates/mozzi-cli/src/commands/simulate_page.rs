@@ -5,9 +5,10 @@ use crate::conditions::happened;
 use crate::json;
 use crate::robot::Units;
 use crate::text::{Decimals, Page, about, scalar, table};
-use mozzi::simulation::{Closing, ContactEvent, Energy, OneSidedAccount, Stopped};
-use mozzi::{Model, Trajectory};
+use mozzi::Model;
 use mozzi_motion::controllers::Overload;
+use mozzi_sim::Trajectory;
+use mozzi_sim::{Closing, ContactEvent, Energy, OneSidedAccount, Stopped};
 use serde_json::{Value, json};
 
 /// Rows of the table on the screen.

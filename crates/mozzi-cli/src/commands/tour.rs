@@ -12,8 +12,9 @@ use mozzi::quantities::{
     BodyJacobian, CoriolisMatrix, ForwardDynamics, ForwardKinematics, InverseDynamics, KineticEnergy, MassMatrix,
     PotentialEnergy,
 };
-use mozzi::simulation::{Method, Options, Zero};
-use mozzi::{Environment, Model, Trajectory, Wrench};
+use mozzi::{Environment, Model, Wrench};
+use mozzi_sim::Trajectory;
+use mozzi_sim::{Method, Options, Zero};
 use nalgebra::DVector;
 
 const ROBOT: &str = "ur5";
@@ -111,7 +112,7 @@ fn fall(model: &Model, page: &mut Page) -> Result<()> {
     let mut motions = Vec::new();
     for method in [Method::SemiImplicitEuler, Method::RungeKutta4] {
         let options = options(method);
-        motions.push((method, model.simulate(&THETA, &[0.0; 6], Zero, &options)?));
+        motions.push((method, mozzi_sim::simulate(model, &THETA, &[0.0; 6], Zero, &options)?));
     }
     if let Some((method, motion)) = motions.last() {
         page.lines(&[format!(

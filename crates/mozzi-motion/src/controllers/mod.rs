@@ -1,5 +1,5 @@
 //! Controllers: motors that follow a [`Reference`](crate::trajectories::Reference) (Modern Robotics, chapter 11). Each
-//! is an [`Input`](mozzi::simulation::Input) of a simulation, and has a model of its own, which may differ from the
+//! is an [`Input`](mozzi_sim::Input) of a simulation, and has a model of its own, which may differ from the
 //! simulated robot.
 //!
 //! | | τ | the error if the model is exact |

@@ -22,7 +22,7 @@ use crate::error::check;
 use bounds::Within;
 use mozzi::model::Bounds;
 use mozzi::nalgebra::Vector6;
-use mozzi::testing::Random;
+use mozzi::random::Random;
 use mozzi::{FrameId, Model, Twist, body_jacobian, forward_kinematics, integrate};
 use step::Step;
 

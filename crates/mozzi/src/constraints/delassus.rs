@@ -43,7 +43,7 @@ pub struct ConstraintMemory<S = f64> {
     /// The increment of λ.
     step: Vec<S>,
     /// The right-hand side, m numbers; `lambda` has m as well, `vector` n.
-    pub(crate) right: Vec<S>,
+    pub right: Vec<S>,
     pub(crate) lambda: Vec<S>,
     pub(crate) vector: Vec<S>,
 }
@@ -82,7 +82,7 @@ impl<S: Scalar> ConstraintMemory<S> {
 pass! {
 /// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. The workspace holds T_{i,i−1}(θ), the
 /// memory A.
-pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
+pub fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     workspace: &mut Workspace<S>,
     memory: &mut ConstraintMemory<S>,
@@ -211,7 +211,7 @@ pub(crate) fn subtract_forces<S: Scalar, C: Scalar>(model: &Model<C>, memory: &C
 
 /// Adds b_r = Σ_j Y_rj x_j to `right`.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn add_products<S: Scalar, C: Scalar>(model: &Model<C>, rows: &[S], x: &[S], right: &mut [S]) {
+pub fn add_products<S: Scalar, C: Scalar>(model: &Model<C>, rows: &[S], x: &[S], right: &mut [S]) {
     let n = model.n();
     for tie in &model.ties.list {
         for r in tie.first..tie.first + tie.kind.rows() {

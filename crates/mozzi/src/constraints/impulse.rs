@@ -42,7 +42,7 @@ pub fn constraint_impulse<S: Scalar + From<C>, C: Scalar>(
 
 /// −M⁻¹Aᵀλ, where λ solves A M⁻¹Aᵀλ = b and b is `memory.right`.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>, x: &mut [S]) {
+pub fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>, x: &mut [S]) {
     solve(model, memory);
     x.fill(S::zero());
     subtract_forces(model, memory, x);

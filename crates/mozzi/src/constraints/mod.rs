@@ -10,7 +10,7 @@
 //! [`Model::with_constraints`](crate::Model::with_constraints). They may be redundant: λ is then the one of least norm
 //! in the limit, and Aᵀλ and θ̈ are unique.
 
-pub(crate) mod delassus;
+pub mod delassus;
 mod forward_dynamics;
 mod impulse;
 mod jacobian;
@@ -21,7 +21,7 @@ mod tests;
 
 pub use delassus::ConstraintMemory;
 pub use forward_dynamics::{ConstrainedForwardDynamics, constrained_forward_dynamics};
-pub(crate) use impulse::change;
+pub use impulse::change;
 pub use impulse::{ConstraintImpulse, constraint_impulse};
 pub(crate) use jacobian::wrench_of;
 pub use jacobian::{ConstraintBias, ConstraintJacobian, ConstraintResidual, constraint_jacobian};

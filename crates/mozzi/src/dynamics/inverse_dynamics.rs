@@ -52,7 +52,7 @@ pass! {
 /// v̇ + ω × v of the origin. Link i's motion is computed from its parent's in this form by the book's equations, then
 /// converted to the frame that moves with its own origin. The wrench 𝓕_i is the same in both; the linear part of 𝒱
 /// costs nothing.
-pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
+pub fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, tau: &mut [S],
 ) {

@@ -80,7 +80,7 @@ pub use forward_dynamics_by_inverse_dynamics::ForwardDynamicsByInverseDynamics;
 pub use forward_dynamics_derivatives::{ForwardDynamicsDerivatives, forward_dynamics_derivatives};
 pub use forward_dynamics_vjp::{ForwardDynamicsVjp, forward_dynamics_vjp};
 pub use frame_vjp::{FrameAccelerationVjp, FrameTwistVjp, frame_acceleration_vjp, frame_twist_vjp};
-pub(crate) use inverse_dynamics::newton_euler;
+pub use inverse_dynamics::newton_euler;
 pub use inverse_dynamics::{InverseDynamics, inverse_dynamics};
 pub use inverse_dynamics_derivatives::{InverseDynamicsDerivatives, inverse_dynamics_derivatives};
 pub use inverse_dynamics_vjp::{InverseDynamicsVjp, inverse_dynamics_vjp};
@@ -97,6 +97,6 @@ pub use parameter_vjp::{
     inverse_dynamics_parameter_vjp,
 };
 pub use regressor::{EnergyRegressors, Regressor, energy_regressors, regressor};
-pub(crate) use spring_forces::add_spring_forces;
+pub use spring_forces::add_spring_forces;
 pub use spring_forces::{SpringForces, spring_forces};
 pub use task_space_dynamics::{TaskSpaceDynamics, task_space_dynamics};

@@ -79,7 +79,7 @@ pub(super) fn joint_entries<S: Scalar + From<C>, C: Scalar>(
     mut add: impl FnMut(usize, usize, S),
 ) {
     for (k, place) in model.places().iter().enumerate() {
-        let column = 10 * model.bodies().count() + JOINT_PARAMETERS * k;
+        let column = model.parameters_of_joint(k).start;
         for j in place.velocities() {
             add(j, column, ddtheta[j]);
             add(j, column + 1, dtheta[j]);

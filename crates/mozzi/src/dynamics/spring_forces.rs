@@ -22,7 +22,7 @@ pub fn spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
 
 /// Adds f_s to a force.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
+pub fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
     for spring in &model.springs {
         spring.add_force(theta, tau);
     }

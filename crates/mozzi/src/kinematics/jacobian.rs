@@ -42,8 +42,9 @@ impl Jacobian<f64> {
     }
 }
 
+/// J θ̇, the twist.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
+pub fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
     let mut V = Twist::zero();
     for (&column, &rate) in columns.iter().zip(dtheta) {
         V += column * rate;

@@ -9,6 +9,13 @@ use alloc::string::ToString;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FrameId(pub(crate) usize);
 
+impl FrameId {
+    /// The frame's index among those of its model.
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
 /// A frame fixed to a link.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<C = f64> {
