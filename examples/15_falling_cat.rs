@@ -7,8 +7,9 @@
 //!
 //! The same by forward dynamics: motors make the joints follow the loop, and no wrench acts on the base.
 
+use mozzi::kinematics::integrate;
 use mozzi::nalgebra::{DMatrix, DVector};
-use mozzi::{Model, SE3, Vec3, integrate};
+use mozzi::{Model, SE3, Vec3};
 use mozzi_examples::agree;
 use mozzi_sim::{Options, torque};
 use std::error::Error;

@@ -1,5 +1,5 @@
-//! Checks that mozzi and mozzi-sim are `no_std`: builds a `#![no_std]` static library with its own panic handler on it, for this
-//! machine.
+//! Checks that mozzi and mozzi-sim are `no_std`: builds a `#![no_std]` static library with its own panic handler on it,
+//! for this machine.
 //!
 //! The crate is `xtask/no_std_check`. It defines a panic handler, as `std` does: if a dependency used `std`, the
 //! compiler would refuse the second one. It is built for the host: no bare-metal target is checked.

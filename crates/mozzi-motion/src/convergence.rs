@@ -1,7 +1,8 @@
 //! Accuracy and cost of each simulation method.
 
 use crate::error::check;
-use mozzi::{Model, difference};
+use mozzi::Model;
+use mozzi::kinematics::difference;
 use mozzi_sim::{Error, Method, Options, Policy, Simulation, dormand_prince_by_equal_steps, torque};
 use std::cell::Cell;
 

@@ -3,9 +3,10 @@
 
 use crate::bodies::{bodies, twist};
 use crate::given::{Given, dot, list, unit, zeros};
+use mozzi::kinematics::seed_direction;
 use mozzi::model::description::JointKind;
 use mozzi::quantities::InverseDynamics;
-use mozzi::{Base, Description, Dual, Entry, Environment, Model, SE3, Scalar, Twist, Vec3, seed_direction};
+use mozzi::{Base, Description, Dual, Entry, Environment, Model, SE3, Scalar, Twist, Vec3};
 
 impl<S: Entry> Given<'_, S> {
     /// By π, by the placements, by the axes, by gravity.

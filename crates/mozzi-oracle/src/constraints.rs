@@ -2,9 +2,10 @@
 //! numbers.
 
 use crate::bodies::{frame, source};
+use mozzi::kinematics::seed_direction;
 use mozzi::model::description::{Anchor, Closure, ConstraintKind};
 use mozzi::nalgebra::{DMatrix, DVector};
-use mozzi::{Description, Entry, Model, Real, SE3, Scalar, Twist, Vec3, seed_direction};
+use mozzi::{Description, Entry, Model, Real, SE3, Scalar, Twist, Vec3};
 
 /// A by rows, and φ.
 pub struct Rows<S> {

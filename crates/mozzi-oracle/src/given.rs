@@ -3,12 +3,12 @@
 use crate::bodies::{bodies, frame, moments, momentum_columns, source, twist};
 use crate::constraints;
 use crate::linear::solve;
+use mozzi::kinematics::seed_direction;
 use mozzi::model::description::{Gear, Joint, Rotor};
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
 use mozzi::{
     ClosedForm, Description, Dual, Entry, Environment, Model, Place, SE3, SO3, Scalar, TaskFrame, Twist, Vec3, Wrench,
-    seed_direction,
 };
 
 /// The data from which a quantity is computed.

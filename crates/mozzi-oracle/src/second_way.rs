@@ -5,9 +5,10 @@ use crate::bodies::{frame, twist};
 use crate::constraints::saddle;
 use crate::given::{Given, dot, list, rows, unit, vector, zeros};
 use crate::linear::inverse;
+use mozzi::kinematics::seed_direction;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
-use mozzi::{Dual, Entry, Environment, SE3, Scalar, TaskFrame, Twist, Vec3, seed_direction};
+use mozzi::{Dual, Entry, Environment, SE3, Scalar, TaskFrame, Twist, Vec3};
 
 /// A quantity's second way. A quantity without one does not compile.
 pub trait SecondWay: Quantity {

@@ -92,7 +92,7 @@ impl<'m, I: Input> Equation<'m, I> {
     /// θ̈ by another implementation, if there is one, no wrench is applied and gravity is the robot's own.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] if it is for another robot.
+    /// [`mozzi::Error::BadArgument`] if it is for another robot.
     pub fn with_forward_dynamics(mut self, other: Option<&'m dyn ForwardDynamics>) -> Result<Self, Error> {
         let Some(other) = other else { return Ok(self) };
         let (mine, its) = (self.model.description(), other.model().description());
@@ -121,8 +121,8 @@ impl<'m, I: Input> Equation<'m, I> {
     /// Calls the input, writes θ̈ and returns the powers. O(n), no allocation but the input's.
     ///
     /// # Errors
-    /// [`Error::Diverged`], [`Error::SingularMassMatrix`], [`Error::BadArgument`] for an input that is not finite, and
-    /// the input's own errors.
+    /// [`Error::Diverged`], [`mozzi::Error::SingularMassMatrix`], [`mozzi::Error::BadArgument`] for an input that is
+    /// not finite, and the input's own errors.
     ///
     /// # Panics
     /// On slices of a wrong length.
@@ -167,7 +167,7 @@ impl<'m, I: Input> Equation<'m, I> {
 
     /// λ of the last evaluation, m numbers: see [`constrained_forward_dynamics`].
     ///
-    /// [`constrained_forward_dynamics`]: mozzi::constrained_forward_dynamics
+    /// [`constrained_forward_dynamics`]: mozzi::constraints::constrained_forward_dynamics
     pub fn lambda(&self) -> &[f64] {
         &self.lambda
     }

@@ -16,7 +16,7 @@
 //! A robot with [constraints](mozzi::constraints) moves by its constrained forward dynamics, and is brought back onto
 //! the constraints after each step: [`Ending::closing`] reports by how much.
 //!
-//! Dry friction, stops and contacts are solved for as impulses of a step ([`one_sided`](crate::one_sided)), by
+//! Dry friction, stops and contacts are solved for as impulses of a step ([`one_sided`]), by
 //! `MoreauJean` alone; other methods are for smooth motions, and refuse them. A step ends where a joint with dry
 //! friction comes to rest. [`Ending::one_sided`] reports the residuals.
 //!

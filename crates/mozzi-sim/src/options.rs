@@ -63,8 +63,8 @@ impl Options {
     /// As [`new`](Self::new) with the fewest equal steps that are not longer than `step` seconds (up to rounding).
     ///
     /// # Errors
-    /// [`Error::BadArgument`] if the step is not positive and finite, the duration not at least 0 and finite, or their
-    /// ratio above 10¹².
+    /// [`mozzi::Error::BadArgument`] if the step is not positive and finite, the duration not at least 0 and finite, or
+    /// their ratio above 10¹².
     pub fn with_step(duration: f64, step: f64) -> Result<Self, Error> {
         check(step > 0.0 && step.is_finite(), "step", step, "a positive, finite number of seconds")?;
         check_duration(duration)?;
@@ -93,7 +93,7 @@ impl Options {
     /// Checks the options.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for an invalid option.
+    /// [`mozzi::Error::BadArgument`] for an invalid option.
     pub fn check(&self) -> Result<(), Error> {
         check_duration(self.duration)?;
         check(self.steps > 0, "steps", self.steps, "at least 1")?;

@@ -11,15 +11,15 @@ use alloc::vec::Vec;
 use mozzi::Workspace;
 use mozzi::constraints::{ConstraintMemory, constrained_forward_dynamics};
 use mozzi::dynamics::forward_dynamics;
+use mozzi::dynamics::mass_matrix;
 use mozzi::kinematics::{difference, seed_direction};
-use mozzi::mass_matrix;
 use mozzi::model::{Environment, Model, Pivots, Variation};
 use mozzi::scalar::{Dual, Real, Scalar};
 use nalgebra::{DMatrix, DVector};
 
 /// One step x\[k+1\] = Φ(x\[k\], τ\[k\]) with x = (θ, θ̇) and τ held, and its derivatives. A change of θ is given by n
-/// numbers, along θ ⊕ δθ (see [`integrate`](mozzi::integrate)); for a floating base they are a twist (ω, v) in its own
-/// coordinates, at either end of the step.
+/// numbers, along θ ⊕ δθ (see [`integrate`](mozzi::kinematics::integrate)); for a floating base they are a twist (ω, v)
+/// in its own coordinates, at either end of the step.
 #[derive(Clone, Debug)]
 pub struct StepSensitivity {
     /// θ\[k+1\].
@@ -66,11 +66,11 @@ impl EndSensitivity {
 
 /// One step of δt = t_f / N from (θ, θ̇), τ held: the state (θ, θ̇) after it. The method, friction and gravity are
 /// those of the options, {s} is at rest, no wrenches are applied. The Euler methods' steps are those of
-/// [`simulate`](simulate). A robot with constraints is brought back onto them after the step.
+/// [`simulate`](crate::simulate). A robot with constraints is brought back onto them after the step.
 ///
 /// # Errors
-/// [`Error::WrongLength`]; [`Error::BadArgument`] for invalid options, or a method that is not
-/// [explicit](crate::Method::explicit); [`Error::SingularMassMatrix`]; [`Error::OpenStart`], [`Error::Opened`].
+/// [`Error::Model`] for slices of a wrong length, invalid options, a method that is not
+/// [explicit](crate::Method::explicit), or a singular mass matrix; [`Error::OpenStart`], [`Error::Opened`].
 pub fn held_step(
     model: &Model,
     theta: &[f64],
@@ -111,14 +111,14 @@ fn held(
     Ok((end, closer.map(|closer| closer.corrections)))
 }
 
-/// [`held_step`](held_step) with its derivatives with respect to the start, the torque, and each of these
+/// [`held_step`] with its derivatives with respect to the start, the torque, and each of these
 /// changes of the robot: exact to rounding for the step as it is taken, whatever its size. At θ̇ = 0 Coulomb
 /// friction has the derivative 0.
 ///
 /// Cost: 3n steps on dual numbers, and one for each change.
 ///
 /// # Errors
-/// Those of [`held_step`](held_step) and of [`with_parameter_tangent`](with_parameter_tangent).
+/// Those of [`held_step`] and of [`Model::with_parameter_tangent`].
 pub fn step_sensitivity(
     model: &Model,
     theta: &[f64],
@@ -157,11 +157,11 @@ pub fn step_sensitivity(
     Ok(StepSensitivity { theta: end.theta, dtheta: end.dtheta, A, B: matrix(&d_tau), P })
 }
 
-/// [`step_sensitivity`](step_sensitivity) along a trajectory of N steps, τ\[k\] held during step k: each step
+/// [`step_sensitivity`] along a trajectory of N steps, τ\[k\] held during step k: each step
 /// starts where the one before it ended. For the derivatives of the end see [`EndSensitivity::of`].
 ///
 /// # Errors
-/// Those of [`step_sensitivity`](step_sensitivity); [`Error::BadArgument`] unless there are N torques.
+/// Those of [`step_sensitivity`]; [`mozzi::Error::BadArgument`] unless there are N torques.
 pub fn sensitivities<T: AsRef<[f64]>>(
     model: &Model,
     theta: &[f64],

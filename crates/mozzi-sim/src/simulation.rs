@@ -28,7 +28,7 @@ use mozzi::model::Model;
 /// };
 /// let run = simulation.run(&model, &[0.0, 0.5], &[0.0, 0.0], Zero)?;
 /// assert!((run.events[0].theta[0] - 1.57).abs() < 1e-12 && run.motion.largest_drift() < 1e-6);
-/// # Ok::<(), mozzi::Error>(())
+/// # Ok::<(), mozzi_sim::Error>(())
 /// ```
 pub struct Simulation<'a> {
     /// Method, duration, rows, gravity, friction, limits.
@@ -162,8 +162,8 @@ impl<'a> Simulation<'a> {
 ///
 /// ```
 /// use mozzi::model::description::{Joint, JointKind};
-/// use mozzi_sim::{self, Options};
 /// use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};
+/// use mozzi_sim::{Options, Zero, simulate, torque};
 /// // a pendulum of 1 kg at 1 m, hanging along −z at θ = 0, turning about y
 /// let axis = JointKind::Screw(ScrewAxis::new([0.0, 1.0, 0.0], [0.0; 3])?);
 /// let pendulum = Description::new("pendulum")
@@ -172,11 +172,11 @@ impl<'a> Simulation<'a> {
 ///     .joint(Joint::new("pivot", "base", "bob", SE3::identity(), axis))
 ///     .build()?;
 ///
-/// let fall = simulate(&pendulum, &[1.0], &[0.0], simulation::Zero, &Options::new(2.0, 2000))?;
+/// let fall = simulate(&pendulum, &[1.0], &[0.0], Zero, &Options::new(2.0, 2000))?;
 /// assert_eq!(fall.len(), 2001);
 /// assert!(fall.largest_drift() < 1e-10);
 ///
-/// let brake = simulation::torque(|_t, _theta, dtheta, tau| tau[0] -= 5.0 * dtheta[0]);
+/// let brake = torque(|_t, _theta, dtheta, tau| tau[0] -= 5.0 * dtheta[0]);
 /// let end = simulate(&pendulum, &[1.0], &[0.0], brake, &Options::with_step(20.0, 0.01)?)?;
 /// assert!(end.last().theta[0].abs() < 1e-10);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -185,9 +185,9 @@ impl<'a> Simulation<'a> {
 /// [`Simulation::run`] [reports](Policy::Report) limits that were exceeded; this method does not.
 ///
 /// # Errors
-/// [`Error::WrongLength`] or [`Error::BadArgument`] for an invalid start, invalid options, or an input that is not
-/// finite; [`Error::SingularMassMatrix`]; [`Error::Diverged`] if the state becomes infinite or NaN;
-/// [`Error::Stalled`], [`Error::NoConvergence`]; the input's own errors.
+/// [`Error::Model`] for an invalid start, invalid options, an input that is not finite, or a singular mass matrix;
+/// [`Error::Diverged`] if the state becomes infinite or NaN; [`Error::Stalled`], [`Error::NoConvergence`]; the input's
+/// own errors.
 pub fn simulate(
     model: &Model,
     theta: &[f64],

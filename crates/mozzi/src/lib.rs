@@ -46,7 +46,6 @@ pub mod lie;
 pub mod linalg;
 pub mod model;
 pub mod quantities;
-mod quantity;
 pub mod random;
 pub mod scalar;
 pub mod spatial;
@@ -59,9 +58,9 @@ pub use api::{
     ForwardDynamicsDerivatives, ForwardDynamicsVjp, InverseDynamicsDerivatives, InverseDynamicsVjp, NewtonEuler,
     ParameterVjp, Reduction, TaskSpaceDynamics,
 };
-pub use constraints::*;
-pub use dynamics::*;
-pub use kinematics::*;
+pub use constraints::ConstraintMemory;
+pub use dynamics::{BaseParameters, ClosedForm, Entry};
+pub use kinematics::{ConfigurationSpace, Jacobian};
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
 pub use model::{

@@ -19,11 +19,11 @@ fn ten_thousand_links() {
     let (theta, dtheta, ddtheta) = (vec![1e-3; n], vec![1e-3; n], vec![1e-3; n]);
     let (mut tau, mut found, mut w) = (vec![0.0_f64; n], vec![0.0; n], Workspace::new(&model));
     let environment = model.environment();
-    mozzi::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut tau);
-    mozzi::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut w, &mut found);
+    mozzi::dynamics::inverse_dynamics(&model, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut tau);
+    mozzi::dynamics::forward_dynamics(&model, &theta, &dtheta, &tau, &environment, &mut w, &mut found);
     // such a long chain is ill-conditioned: compare the torques that the found accelerations need
     let mut again = vec![0.0_f64; n];
-    mozzi::inverse_dynamics(&model, &theta, &dtheta, &found, &environment, &mut w, &mut again);
+    mozzi::dynamics::inverse_dynamics(&model, &theta, &dtheta, &found, &environment, &mut w, &mut again);
     let scale = tau.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     assert!(again.iter().zip(&tau).all(|(a, b)| (a - b).abs() < 1e-9 * scale));
     assert_eq!(model.screws().expect("one axis a joint").M.len(), n);

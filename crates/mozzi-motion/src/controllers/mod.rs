@@ -31,7 +31,8 @@ pub use tracking::{Tracking, TrackingError, tracking_error, tracking_error_of_ro
 use crate::Error;
 use crate::error::check;
 use crate::trajectories::Desired;
-use mozzi::{Model, difference};
+use mozzi::Model;
+use mozzi::kinematics::difference;
 
 /// Gains of each of the n velocities; those of a floating base, which has no motors, are not used.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,9 @@ use super::Gains;
 use crate::Error;
 use crate::error::{check, check_driven, check_open};
 use crate::trajectories::Reference;
+use mozzi::kinematics::forward_kinematics;
 use mozzi::nalgebra::{DVector, Vector6};
-use mozzi::{FrameId, Model, SE3, Task, TaskFrame, Twist, forward_kinematics};
+use mozzi::{FrameId, Model, SE3, Task, TaskFrame, Twist};
 use mozzi_sim::Input;
 
 /// The control law for the frame's error; gains are diagonal in the frame's own coordinates, angular first.

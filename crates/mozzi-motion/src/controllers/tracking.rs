@@ -1,7 +1,8 @@
 //! How well a motion followed its reference.
 
 use crate::trajectories::Reference;
-use mozzi::{Model, difference};
+use mozzi::Model;
+use mozzi::kinematics::difference;
 use mozzi_sim::Trajectory;
 use mozzi_sim::{Recorder, Sample};
 use std::ops::ControlFlow;

@@ -20,10 +20,11 @@ pub use step::Method;
 use crate::Error;
 use crate::error::check;
 use bounds::Within;
+use mozzi::kinematics::{body_jacobian, forward_kinematics, integrate};
 use mozzi::model::Bounds;
 use mozzi::nalgebra::Vector6;
 use mozzi::random::Random;
-use mozzi::{FrameId, Model, Twist, body_jacobian, forward_kinematics, integrate};
+use mozzi::{FrameId, Model, Twist};
 use step::Step;
 
 /// A start is given up when this many iterations have not halved its error.

@@ -1,9 +1,10 @@
 //! Compared with forward kinematics: the embedded robots, and random ones.
 
 use super::*;
+use mozzi::kinematics::difference;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::testing::{floating_tree, state, tree, twist};
-use mozzi::{Description, SE3, SpatialInertia, Vec3, difference};
+use mozzi::{Description, SE3, SpatialInertia, Vec3};
 
 fn robot(name: &str, frame: &str) -> (Model, FrameId) {
     let model = mozzi_urdf::open(name).expect("embedded").build().expect("sound");

@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::Error;
+use mozzi::kinematics::difference;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::testing::{Random, floating_tree, state, tree};
-use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Twist, Vec3, difference};
+use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Twist, Vec3};
 
 fn robot(name: &str) -> Model {
     mozzi_urdf::open(name).expect("embedded").build().expect("sound")

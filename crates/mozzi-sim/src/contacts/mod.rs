@@ -213,7 +213,7 @@ impl Contacts<'_> {
     /// Checks coefficients, shapes and frames.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] naming the contact point.
+    /// [`mozzi::Error::BadArgument`] naming the contact point.
     pub fn check(&self, model: &Model) -> Result<(), Error> {
         let frames = model.frames().len();
         for ContactPoint { name, frame, center, support, mu, restitution } in &self.points {

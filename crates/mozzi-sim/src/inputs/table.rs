@@ -33,8 +33,8 @@ impl Table {
     /// evaluate the table outside its time range.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] if there is no row, a number is not finite, or a time does not come after the one before;
-    /// [`Error::WrongLength`] if the values do not make whole rows.
+    /// [`mozzi::Error::BadArgument`] if there is no row, a number is not finite, or a time does not come after the one
+    /// before; [`mozzi::Error::WrongLength`] if the values do not make whole rows.
     pub fn new(times: Vec<f64>, values: Vec<f64>) -> Result<Self, Error> {
         let bad = |what, found, expected| Err(Error::Model(mozzi::Error::BadArgument { what, found, expected }));
         if times.is_empty() {

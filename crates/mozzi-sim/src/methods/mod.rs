@@ -75,7 +75,7 @@ impl Method {
     /// derivatives.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for a method that is adaptive or implicit.
+    /// [`mozzi::Error::BadArgument`] for a method that is adaptive or implicit.
     pub fn explicit(self) -> Result<Explicit, Error> {
         match self {
             Method::Euler => Ok(Explicit::Euler),

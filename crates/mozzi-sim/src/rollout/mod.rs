@@ -7,8 +7,8 @@
 //! > x̄\[k\] = ∂L/∂x\[k\] + (∂Φ/∂x)ᵀx̄\[k+1\],  τ̄\[k\] = (∂Φ/∂τ)ᵀx̄\[k+1\],  π̄ = Σ (∂Φ/∂π)ᵀx̄\[k+1\]
 //!
 //! It is the adjoint of the discrete step itself, and so exact to rounding for any step size: each stage takes one
-//! [vector-Jacobian product of forward dynamics](mozzi::forward_dynamics_vjp()), O(n), and no matrix is formed. The
-//! derivations are in `adjoint.rs` and, for ⊕ on SO(3) and SE(3), in `retraction.rs`. The implicit midpoint
+//! [vector-Jacobian product of forward dynamics](mozzi::dynamics::forward_dynamics_vjp()), O(n), and no matrix is
+//! formed. The derivations are in `adjoint.rs` and, for ⊕ on SO(3) and SE(3), in `retraction.rs`. The implicit midpoint
 //! rule takes the implicit function theorem and dual numbers, O(n³) a step: `midpoint.rs`.
 //!
 //! A cotangent of θ has n numbers, along θ ⊕ δθ: for a floating base, a ball or a free joint along the body twist in
@@ -82,7 +82,7 @@ pub struct RolloutGradient {
 ///
 /// ```
 /// use mozzi_sim::{Method, Rollout};
-/// # fn example(model: &mozzi::Model, goal: &[f64]) -> Result<(), mozzi::Error> {
+/// # fn example(model: &mozzi::Model, goal: &[f64]) -> Result<(), mozzi_sim::Error> {
 /// let (n, steps) = (model.n(), 200);
 /// let (theta, dtheta, tau) = (vec![0.0; model.nq()], vec![0.0; n], vec![0.0; steps * n]);
 /// let mut rollout = Rollout::new(model, 0.01, Method::RungeKutta4)?;
@@ -127,8 +127,8 @@ impl<'m> Rollout<'m> {
     /// Steps of h seconds by a method; gravity and Coulomb friction are the robot's. Allocates all memory.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for a step that is not positive and finite, an [adaptive](Method::is_adaptive) method, or
-    /// the midpoint rule for a robot with constraints.
+    /// [`mozzi::Error::BadArgument`] for a step that is not positive and finite, an [adaptive](Method::is_adaptive)
+    /// method, or the midpoint rule for a robot with constraints.
     pub fn new(model: &'m Model, h: f64, method: Method) -> Result<Self, Error> {
         check_step(h)?;
         let options = Options { method, ..Options::new(h, 1) };
@@ -148,7 +148,7 @@ impl<'m> Rollout<'m> {
     /// Gravity in {s} coordinates, m/s², in place of the robot's.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] unless it is finite.
+    /// [`mozzi::Error::BadArgument`] unless it is finite.
     pub fn with_gravity(self, gravity: Vec3) -> Result<Self, Error> {
         let options = Options { gravity: Some(gravity), ..self.options };
         self.with_options(options)
@@ -157,7 +157,7 @@ impl<'m> Rollout<'m> {
     /// Another model of Coulomb friction. Where it is smooth, so is the loss.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for a slip speed that is not positive and finite.
+    /// [`mozzi::Error::BadArgument`] for a slip speed that is not positive and finite.
     pub fn with_friction(self, friction: Friction) -> Result<Self, Error> {
         let options = Options { friction, ..self.options };
         self.with_options(options)
@@ -188,7 +188,7 @@ impl<'m> Rollout<'m> {
     /// `steps` steps. By default √N, or more if the stages fit into 1 MB. With N or more, no step is computed twice.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] for 0.
+    /// [`mozzi::Error::BadArgument`] for 0.
     pub fn with_checkpoints_every(mut self, steps: usize) -> Result<Self, Error> {
         check(steps > 0, "the number of steps between checkpoints", steps, "at least 1")?;
         self.segment = Some(steps);
@@ -205,8 +205,8 @@ impl<'m> Rollout<'m> {
     /// stages.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::BadArgument`] for numbers that are not finite, [`Error::SingularMassMatrix`],
-    /// [`Error::Diverged`].
+    /// [`mozzi::Error::WrongLength`], [`mozzi::Error::BadArgument`] for numbers that are not finite,
+    /// [`mozzi::Error::SingularMassMatrix`], [`Error::Diverged`].
     pub fn states(&mut self, theta: &[f64], dtheta: &[f64], tau: &[f64]) -> Result<RolloutStates, Error> {
         let N = self.check(theta, dtheta, tau)?;
         let (nq, n) = (self.model.nq(), self.model.n());

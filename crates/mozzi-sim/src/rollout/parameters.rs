@@ -4,7 +4,8 @@
 //!
 //! > xᵀ∂θ̈/∂π = −yᵀY(θ, θ̇, θ̈), y = M⁻¹x
 //!
-//! which is [`inverse_dynamics_parameter_vjp`](mozzi::inverse_dynamics_parameter_vjp()) of y. A stage knows θ̈ and y.
+//! which is [`inverse_dynamics_parameter_vjp`](mozzi::dynamics::inverse_dynamics_parameter_vjp()) of y. A stage knows
+//! θ̈ and y.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -4,9 +4,10 @@ extern crate std;
 use crate::simulate;
 use crate::{Friction, Method, Options, Zero};
 use alloc::vec;
+use mozzi::kinematics::difference;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::testing::{inertia, mixed_tree, state};
-use mozzi::{Description, Model, SE3, SO3, SpatialInertia, Sym3, Twist, Vec3, difference};
+use mozzi::{Description, Model, SE3, SO3, SpatialInertia, Sym3, Twist, Vec3};
 use nalgebra::DVector;
 
 fn joint(name: &str, parent: &str, child: &str, kind: JointKind) -> Joint {

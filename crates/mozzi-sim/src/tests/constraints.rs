@@ -3,8 +3,9 @@
 use crate::{Method, Options, Policy, Simulation, Zero, simulate, torque};
 use alloc::vec;
 use alloc::vec::Vec;
+use mozzi::constraints::constraint_jacobian;
 use mozzi::testing::four_bar;
-use mozzi::{Model, Workspace, constraint_jacobian};
+use mozzi::{Model, Workspace};
 
 const GUESS: [f64; 3] = [1.0, -0.6, 1.6];
 

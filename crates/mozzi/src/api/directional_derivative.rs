@@ -13,7 +13,8 @@ impl Model<f64> {
     ///
     /// ```
     /// use mozzi::model::description::{Joint, JointKind};
-    /// use mozzi::{Description, Dual, SE3, ScrewAxis, SpatialInertia, Vec3, Workspace, mass_matrix};
+    /// use mozzi::{Description, Dual, SE3, ScrewAxis, SpatialInertia, Vec3, Workspace};
+    /// use mozzi::dynamics::mass_matrix;
     /// // an arm that turns about z, and a slide along it that carries 2 kg: M₁₁ = 2 θ₂²
     /// let turn = JointKind::Screw(ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3])?);
     /// let slide = JointKind::Screw(ScrewAxis::prismatic([1.0, 0.0, 0.0])?);

@@ -4,7 +4,7 @@ use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_fo
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
 use crate::model::Model;
-use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, THETA, VECTOR, output};
+use crate::quantities::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
 use crate::workspace::Workspace;
 

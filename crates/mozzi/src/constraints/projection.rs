@@ -4,7 +4,7 @@ use super::delassus::{ConstraintMemory, factor, solve};
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
 use crate::model::Model;
-use crate::quantity::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, THETA, output};
+use crate::quantities::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, THETA, output};
 use crate::scalar::Scalar;
 use crate::workspace::Workspace;
 

@@ -6,7 +6,7 @@ use super::several_axes::carrier_twist;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::model::{Environment, Model};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
+use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Wrench;
 use crate::workspace::{Recursion, Workspace};

@@ -7,7 +7,7 @@ use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Spring};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, Uses, output};
+use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, Uses, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{SpatialInertia, Twist};
 use crate::workspace::{Recursion, Workspace};

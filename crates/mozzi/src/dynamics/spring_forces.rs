@@ -1,7 +1,7 @@
 //! Springs in the joints.
 
 use crate::model::Model;
-use crate::quantity::{Call, Declaration, FORCE, Kernel, Quantity, THETA, VECTOR, output};
+use crate::quantities::{Call, Declaration, FORCE, Kernel, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
 
 /// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: the forces that hold the joints against their springs. θ is not

@@ -140,8 +140,8 @@ impl<C: Scalar> Model<C> {
         self.structure.names[0].len()
     }
 
-    /// Rotor inertia of each of the n velocities as felt at the joint, mimic joints included: Σ ratio² · armature, kg m²
-    /// or kg.
+    /// Rotor inertia of each of the n velocities as felt at the joint, mimic joints included: Σ ratio² · armature, kg
+    /// m² or kg.
     pub fn armature(&self) -> &[C] {
         &self.armature
     }

@@ -4,7 +4,7 @@ use super::{LIST, place_of};
 use crate::api::check_length;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame};
-use crate::quantity::{Declaration, Dim, Of, Quantity, Subject};
+use crate::quantities::{Declaration, Dim, Of, Quantity, Subject};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;

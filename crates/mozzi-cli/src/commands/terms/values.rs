@@ -4,10 +4,9 @@ use crate::failure::{self, Result};
 use crate::quantity::hyphenated;
 use crate::robot::end_effector;
 use crate::task::TaskArguments;
+use mozzi::TaskSpaceDynamics;
 use mozzi::quantities::{BiasForces, InverseDynamics, LIST, Of, Query};
-use mozzi::{
-    BodyFrame, ClosedForm, Environment, FrameId, Model, NewtonEuler, Task, TaskFrame, TaskSpaceDynamics, Wrench,
-};
+use mozzi::{BodyFrame, ClosedForm, Environment, FrameId, Model, NewtonEuler, Task, TaskFrame, Wrench};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 

@@ -11,8 +11,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// The derivatives of θ̈ and λ of [`constrained_forward_dynamics`](crate::constrained_forward_dynamics): n × n and m ×
-/// n.
+/// The derivatives of θ̈ and λ of [`constrained_forward_dynamics`](crate::constraints::constrained_forward_dynamics): n
+/// × n and m × n.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstrainedForwardDynamicsDerivatives {
     /// ∂θ̈/∂θ; a floating base and balls along their velocities.

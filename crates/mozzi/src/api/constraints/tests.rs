@@ -1,7 +1,8 @@
+use crate::constraints::constrained_forward_dynamics;
 use crate::model::description::{Anchor, Closure, Constraint};
 use crate::scalar::Dual;
 use crate::testing::{closed, floating_mixed_tree, four_bar, mixed_tree, state, tree};
-use crate::{Environment, Error, Model, SE3, Workspace, constrained_forward_dynamics, kinematics};
+use crate::{Environment, Error, Model, SE3, Workspace, kinematics};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DVector;

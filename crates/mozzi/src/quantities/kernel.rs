@@ -1,16 +1,6 @@
-//! Quantities: each is declared at the foot of its kernel's file. The list of all is in
-//! [`quantities`](crate::quantities).
+//! What a quantity and a kernel are, and how a quantity calls its kernel.
 
-mod declaration;
-mod memory;
-mod subject;
-
-pub(crate) use declaration::*;
-pub use declaration::{Declaration, Dim, INPUTS, Input, Of, Output, Uses};
-pub use memory::Memory;
-pub(crate) use memory::{by_rows, six, sized};
-pub use subject::Subject;
-
+use super::{Declaration, Memory, Of, Subject, Uses};
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
