@@ -7,7 +7,7 @@
 //!
 //! The same by forward dynamics: motors make the joints follow the loop, and no wrench acts on the base.
 
-use mozzi::kinematics::integrate;
+use mozzi::model::integrate;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::{Model, SE3, Vec3};
 use mozzi_examples::agree;

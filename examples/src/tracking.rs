@@ -2,7 +2,7 @@
 //! load that is missing in the controller's model.
 
 use crate::chart::{Curve, chart};
-use mozzi::kinematics::difference;
+use mozzi::model::difference;
 use mozzi::{FrameId, Model, SpatialInertia, Vec3};
 use mozzi_motion::Policy;
 use mozzi_motion::controllers::{Saturated, tracking_error};

@@ -24,6 +24,7 @@ mod inlining;
 mod licences;
 mod main_job;
 mod metadata;
+mod module_order;
 mod nightly;
 mod no_std;
 mod oracles;
@@ -233,6 +234,7 @@ fn check(workspace: &Workspace, which: Check) -> ExitCode {
     report.step("advisories", || advisories::check(workspace));
     report.step("house rules", || house_rules::check(workspace));
     report.step("lengths of documents", || documents::check(workspace));
+    report.step("places of the map", || documents::check_places(workspace));
     if which == Check::Everything {
         builds(workspace, &mut report);
     }

@@ -2,7 +2,7 @@
 
 use crate::error::check;
 use mozzi::Model;
-use mozzi::kinematics::difference;
+use mozzi::model::difference;
 use mozzi_sim::{Error, Method, Options, Policy, Simulation, dormand_prince_by_equal_steps, torque};
 use std::cell::Cell;
 

@@ -3,8 +3,8 @@
 
 use crate::bodies::{bodies, twist};
 use crate::given::{Given, dot, list, unit, zeros};
-use mozzi::kinematics::seed_direction;
 use mozzi::model::description::JointKind;
+use mozzi::model::seed_direction;
 use mozzi::quantities::InverseDynamics;
 use mozzi::{Base, Description, Dual, Entry, Environment, Model, SE3, Scalar, Twist, Vec3};
 

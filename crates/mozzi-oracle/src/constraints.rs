@@ -2,8 +2,8 @@
 //! numbers.
 
 use crate::bodies::{frame, source};
-use mozzi::kinematics::seed_direction;
 use mozzi::model::description::{Anchor, Closure, ConstraintKind};
+use mozzi::model::seed_direction;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::{Description, Entry, Model, Real, SE3, Scalar, Twist, Vec3};
 

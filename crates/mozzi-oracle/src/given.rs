@@ -3,8 +3,8 @@
 use crate::bodies::{bodies, frame, moments, momentum_columns, source, twist};
 use crate::constraints;
 use crate::linear::solve;
-use mozzi::kinematics::seed_direction;
 use mozzi::model::description::{Gear, Joint, Rotor};
+use mozzi::model::seed_direction;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
 use mozzi::{

@@ -5,7 +5,7 @@ use crate::bodies::{frame, twist};
 use crate::constraints::saddle;
 use crate::given::{Given, dot, list, rows, unit, vector, zeros};
 use crate::linear::inverse;
-use mozzi::kinematics::seed_direction;
+use mozzi::model::seed_direction;
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::*;
 use mozzi::{Dual, Entry, Environment, SE3, Scalar, TaskFrame, Twist, Vec3};

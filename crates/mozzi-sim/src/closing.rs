@@ -3,10 +3,11 @@
 use crate::Error;
 use alloc::vec;
 use alloc::vec::Vec;
+use mozzi::ConstraintMemory;
 use mozzi::Workspace;
-use mozzi::constraints::{ConstraintMemory, change, constraint_jacobian, delassus};
-use mozzi::kinematics::integrate;
+use mozzi::constraints::{change, constraint_jacobian, delassus};
 use mozzi::model::Model;
+use mozzi::model::integrate;
 use mozzi::scalar::{Float, Real, Scalar};
 
 /// Maximum numbers of corrections with one factorization, and of factorizations.

@@ -8,17 +8,18 @@ use crate::{Explicit, Motion, Options};
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
+use mozzi::ConstraintMemory;
 use mozzi::Workspace;
-use mozzi::constraints::{ConstraintMemory, constrained_forward_dynamics};
+use mozzi::constraints::constrained_forward_dynamics;
 use mozzi::dynamics::forward_dynamics;
 use mozzi::dynamics::mass_matrix;
-use mozzi::kinematics::{difference, seed_direction};
 use mozzi::model::{Environment, Model, Pivots, Variation};
+use mozzi::model::{difference, seed_direction};
 use mozzi::scalar::{Dual, Real, Scalar};
 use nalgebra::{DMatrix, DVector};
 
 /// One step x\[k+1\] = Φ(x\[k\], τ\[k\]) with x = (θ, θ̇) and τ held, and its derivatives. A change of θ is given by n
-/// numbers, along θ ⊕ δθ (see [`integrate`](mozzi::kinematics::integrate)); for a floating base they are a twist (ω, v)
+/// numbers, along θ ⊕ δθ (see [`integrate`](mozzi::model::integrate)); for a floating base they are a twist (ω, v)
 /// in its own coordinates, at either end of the step.
 #[derive(Clone, Debug)]
 pub struct StepSensitivity {
@@ -241,7 +242,7 @@ mod tests {
     use super::*;
     use crate::simulate;
     use crate::{Friction, Method, torque};
-    use mozzi::kinematics::integrate;
+    use mozzi::model::integrate;
     use mozzi::testing::{Random, floating_tree, mixed_tree, state, tree};
 
     const METHODS: [Method; 3] = [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4];

@@ -58,17 +58,16 @@ pub use api::{
     ForwardDynamicsDerivatives, ForwardDynamicsVjp, InverseDynamicsDerivatives, InverseDynamicsVjp, NewtonEuler,
     ParameterVjp, Reduction, TaskSpaceDynamics,
 };
-pub use constraints::ConstraintMemory;
 pub use dynamics::{BaseParameters, ClosedForm, Entry};
-pub use kinematics::{ConfigurationSpace, Jacobian};
+pub use kinematics::Jacobian;
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
 pub use model::{
-    Base, Description, Environment, Error, Frame, FrameId, Freedom, HomeFrames, Model, Pivots, Place, Screws, Task,
-    TaskFrame, TaskMemory, least_is_clear,
+    Base, ConfigurationSpace, Description, Environment, Error, Frame, FrameId, Freedom, HomeFrames, Model, Pivots,
+    Place, Screws, Task, TaskFrame, TaskMemory, least_is_clear,
 };
 pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};
 pub use spatial::solids::Solid;
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
-pub use workspace::Workspace;
+pub use workspace::{ConstraintMemory, Workspace};

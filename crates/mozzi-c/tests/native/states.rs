@@ -1,6 +1,6 @@
 //! Robots and states with every quantity by the library itself: what the programs read and compare with.
 
-use mozzi::kinematics::integrate;
+use mozzi::model::integrate;
 use mozzi::quantities::{LIST, Of, Query};
 use mozzi::random::Random;
 use mozzi::{Environment, Model, TaskFrame, Twist, Vec3, Wrench};

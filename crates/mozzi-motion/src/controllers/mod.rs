@@ -32,7 +32,7 @@ use crate::Error;
 use crate::error::check;
 use crate::trajectories::Desired;
 use mozzi::Model;
-use mozzi::kinematics::difference;
+use mozzi::model::difference;
 
 /// Gains of each of the n velocities; those of a floating base, which has no motors, are not used.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::*;
 use crate::Policy;
 use crate::trajectories::{Hold, Line, Profile, Reference, Timed};
-use mozzi::kinematics::integrate;
+use mozzi::model::integrate;
 use mozzi::testing::{state, tree, wrench};
 use mozzi::{SE3, SpatialInertia, Task, TaskFrame, Twist, Vec3, Wrench};
 use mozzi_sim::{Input, Options, applied};

@@ -2,7 +2,7 @@
 
 use crate::trajectories::Reference;
 use mozzi::Model;
-use mozzi::kinematics::difference;
+use mozzi::model::difference;
 use mozzi_sim::Trajectory;
 use mozzi_sim::{Recorder, Sample};
 use std::ops::ControlFlow;

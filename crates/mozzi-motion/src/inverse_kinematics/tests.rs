@@ -1,8 +1,8 @@
 //! Compared with forward kinematics: the embedded robots, and random ones.
 
 use super::*;
-use mozzi::kinematics::difference;
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::difference;
 use mozzi::testing::{floating_tree, state, tree, twist};
 use mozzi::{Description, SE3, SpatialInertia, Vec3};
 

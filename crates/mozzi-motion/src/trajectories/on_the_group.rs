@@ -2,8 +2,8 @@
 
 use super::tests::{assert_rates, used};
 use super::*;
-use mozzi::kinematics::difference;
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::difference;
 use mozzi::testing::{Random, floating_mixed_tree, mixed_tree, state};
 use mozzi::{Description, Freedom, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 

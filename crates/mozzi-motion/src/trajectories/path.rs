@@ -2,7 +2,7 @@
 
 use crate::Error;
 use mozzi::Model;
-use mozzi::kinematics::{difference, integrate};
+use mozzi::model::{difference, integrate};
 
 /// A point of a path.
 #[derive(Clone, Debug, PartialEq)]

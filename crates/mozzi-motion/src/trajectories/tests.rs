@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::Error;
-use mozzi::kinematics::difference;
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::difference;
 use mozzi::testing::{Random, floating_tree, state, tree};
 use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Twist, Vec3};
 

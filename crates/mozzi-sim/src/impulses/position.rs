@@ -8,10 +8,10 @@ use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 use mozzi::constraints::constraint_jacobian;
-use mozzi::kinematics::integrate;
 use mozzi::linalg::Vec3;
 use mozzi::model::FrameId;
 use mozzi::model::Support;
+use mozzi::model::integrate;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// Gaps below this are rounding, m.

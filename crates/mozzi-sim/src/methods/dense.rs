@@ -3,8 +3,8 @@
 use crate::state::State;
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::kinematics::{difference, integrate};
 use mozzi::model::Model;
+use mozzi::model::{difference, integrate};
 
 /// θ = θ₀ ⊕ u(x) and θ̇(x) for x from 0 to 1 of a step, by polynomials.
 #[derive(Clone, Debug)]

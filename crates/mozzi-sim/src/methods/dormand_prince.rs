@@ -9,8 +9,8 @@ use crate::state::State;
 use crate::{Equation, Input, Motion, Options};
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::kinematics::integrate;
 use mozzi::model::Model;
+use mozzi::model::integrate;
 use mozzi::scalar::Scalar;
 
 const C: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];

@@ -3,7 +3,7 @@
 use crate::Explicit;
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::kinematics::ConfigurationSpace;
+use mozzi::model::ConfigurationSpace;
 use mozzi::scalar::{Real, Scalar};
 
 /// A state with its rates, and with the integrals of K further rates (such as work, the integral of power). Or the

@@ -15,9 +15,9 @@ use crate::one_sided::Law;
 use crate::{Input, Powers};
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::kinematics::integrate;
 use mozzi::lie::SO3;
 use mozzi::linalg::Vec3;
+use mozzi::model::integrate;
 use mozzi::model::{Freedom, Model, Place};
 
 /// Evaluations of the smooth forces: with θ̇, then with ½(θ̇ + θ̇⁺), until θ̇⁺ changes by less than `SETTLED`, relative

@@ -16,7 +16,7 @@ use super::tape::Tape;
 use crate::Explicit;
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::kinematics::ConfigurationSpace;
+use mozzi::model::ConfigurationSpace;
 
 /// The number of stages of a step.
 pub fn stages(method: Explicit) -> usize {

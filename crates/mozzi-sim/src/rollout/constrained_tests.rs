@@ -6,9 +6,9 @@ use super::tests::{Case, SMOOTH, case, dot};
 use crate::Method;
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::kinematics::difference;
 use mozzi::model::Model;
 use mozzi::model::description::Closure;
+use mozzi::model::difference;
 use mozzi::quantities::ConstraintResidual;
 use mozzi::testing::{closed, floating_tree, four_bar, tree};
 

@@ -22,8 +22,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use mozzi::Workspace;
 use mozzi::dynamics::{inverse_dynamics, mass_matrix, mass_matrix_rate};
-use mozzi::kinematics::{integrate, seed_direction};
 use mozzi::model::{Environment, Freedom, Model, Variation};
+use mozzi::model::{integrate, seed_direction};
 use mozzi::scalar::{Dual, Real, Scalar};
 use nalgebra::{DMatrix, DVector};
 

@@ -8,8 +8,8 @@ use crate::{Method, Options};
 use alloc::vec;
 use alloc::vec::Vec;
 use mozzi::Workspace;
-use mozzi::kinematics::{difference, integrate};
 use mozzi::model::Model;
+use mozzi::model::{difference, integrate};
 
 const N: usize = 5;
 const H: f64 = 0.01;

@@ -12,8 +12,8 @@
 //!
 //! > ∂w/∂u = −½`[ad_V]` − ¹⁄₁₂(`[ad_W]` + `[ad_u]``[ad_V]`),  W = `[ad_u]`V
 
-use mozzi::kinematics::ConfigurationSpace;
 use mozzi::lie::SE3;
+use mozzi::model::ConfigurationSpace;
 use mozzi::model::{Freedom, Place};
 use mozzi::scalar::Real;
 use mozzi::spatial::{Twist, Wrench};
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
     use mozzi::Description;
     use mozzi::Dual;
-    use mozzi::kinematics::rate_of_logarithm;
+    use mozzi::model::rate_of_logarithm;
     use mozzi::testing::{inertia, twist, wrench};
 
     fn along(X: Twist, by: Twist) -> Twist<Dual> {

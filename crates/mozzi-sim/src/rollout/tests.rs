@@ -7,8 +7,8 @@ use crate::{Friction, Method, Options, torque};
 use crate::{sensitivities, simulate};
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::kinematics::{difference, integrate};
 use mozzi::model::{Model, Variation};
+use mozzi::model::{difference, integrate};
 use mozzi::testing::{Random, floating_mixed_tree, floating_tree, four_bar, mixed_tree, state, tree};
 use nalgebra::{DMatrix, DVector};
 

@@ -3,7 +3,7 @@
 use super::close::closed;
 use super::entry::{text, three};
 use crate::robot::Robot;
-use mozzi::kinematics::integrate;
+use mozzi::model::integrate;
 use mozzi::nalgebra::{DMatrix, DVector, Vector3};
 use mozzi::{Error, FrameId, Freedom, Model, Place, Vec3};
 use serde_json::Value;

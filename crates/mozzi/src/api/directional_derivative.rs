@@ -1,7 +1,7 @@
 //! Directional derivatives of any function of θ.
 
-use crate::kinematics::{integrate, seed_direction};
 use crate::model::{Error, Model};
+use crate::model::{integrate, seed_direction};
 use crate::scalar::Dual;
 use alloc::vec::Vec;
 

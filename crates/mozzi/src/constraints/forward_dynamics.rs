@@ -1,6 +1,6 @@
 //! Forward dynamics of robots with constraints (Modern Robotics, section 8.7).
 
-use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_forces};
+use super::delassus::{add_products, factor, solve, subtract_forces};
 use super::jacobian::rows;
 use crate::dynamics::{add_spring_forces, bias_forces, joint_friction};
 use crate::linalg::ldlt;
@@ -9,7 +9,7 @@ use crate::quantities::{
     ACCELERATION, Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output,
 };
 use crate::scalar::Scalar;
-use crate::workspace::Workspace;
+use crate::workspace::{ConstraintMemory, Workspace};
 
 /// θ̈ and λ of a robot with constraints:
 ///

@@ -19,7 +19,6 @@ mod relative_motion;
 #[cfg(test)]
 mod tests;
 
-pub use delassus::ConstraintMemory;
 pub use forward_dynamics::constrained_forward_dynamics;
 pub use impulse::change;
 pub use impulse::constraint_impulse;

@@ -20,7 +20,7 @@ pass! {
 /// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n,
 /// row-major: row i is τ_i's.
 ///
-/// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::kinematics::integrate) moves it: an
+/// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::model::integrate) moves it: an
 /// entry of θ for a joint, the body twist of a floating base, in its own coordinates. Applied wrenches keep their
 /// coordinates in their frames, and {s} keeps its motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of
 /// ∂τ/∂θ̇ (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….

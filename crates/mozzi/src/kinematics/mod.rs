@@ -1,7 +1,6 @@
 //! Poses, velocities and Jacobians of frames.
 
 mod base;
-mod configuration;
 mod exponentials;
 pub(crate) mod forward;
 pub(crate) mod frame_acceleration;
@@ -19,7 +18,6 @@ pub use jacobian::twist_of;
 pub(crate) use joint_transforms::{joint_sines, joint_transforms};
 pub(crate) use link_twists::link_twists;
 
-pub use configuration::{ConfigurationSpace, difference, integrate, rate_of_logarithm, seed_direction};
 pub use exponentials::{
     body_jacobian_of_screws, body_product_of_exponentials, product_of_exponentials, space_jacobian_of_screws,
 };

@@ -1,12 +1,12 @@
 //! From a description to the screw normal form.
 
+use super::ConfigurationSpace;
 use super::description::{self, Joint, JointKind};
 use super::places::names_of;
 use super::tie::ties;
 use super::{
     Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Severity, Spring, Structure,
 };
-use crate::kinematics::ConfigurationSpace;
 use crate::lie::{SE3, SO3};
 use crate::linalg::{Mat3, Vec3, ldlt::Pattern};
 use crate::scalar::Real;

@@ -1,9 +1,11 @@
 //! The robot: the content of its file ([`Description`]), and the constants of the kernels ([`Model`]).
 
+mod arguments;
 mod base;
 mod bounds;
 mod build;
 mod check;
+mod configuration;
 mod constraint;
 mod contact_point;
 mod couples;
@@ -27,7 +29,6 @@ mod tie;
 mod traverse;
 mod variation;
 
-use crate::kinematics::ConfigurationSpace;
 use crate::linalg::{Vec3, ldlt::Pattern};
 use crate::scalar::Scalar;
 use crate::spatial::SpatialInertia;
@@ -35,9 +36,11 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+pub(crate) use arguments::{check_length, check_unit};
 pub use base::Base;
 pub use bounds::Bounds;
 pub use check::{Element, Problem, Severity};
+pub use configuration::{ConfigurationSpace, difference, integrate, rate_of_logarithm, seed_direction};
 pub use contact_point::{ContactPoint, Support};
 pub use description::Description;
 pub use environment::Environment;

@@ -1,12 +1,11 @@
 //! Memory for any quantity.
 
-use crate::constraints::ConstraintMemory;
 use crate::lie::SE3;
 use crate::linalg::{Vec3, ldlt::Pattern};
 use crate::model::{Model, TaskMemory};
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
-use crate::workspace::Workspace;
+use crate::workspace::{ConstraintMemory, Workspace};
 use alloc::vec;
 use alloc::vec::Vec;
 

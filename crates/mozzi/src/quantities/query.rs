@@ -1,9 +1,8 @@
 //! A quantity with the frame, task or point that it refers to.
 
 use super::{LIST, place_of};
-use crate::api::check_length;
 use crate::linalg::Vec3;
-use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame};
+use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame, check_length};
 use crate::quantities::{Declaration, Dim, Of, Quantity, Subject};
 use alloc::format;
 use alloc::string::String;

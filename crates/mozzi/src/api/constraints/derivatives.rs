@@ -1,9 +1,11 @@
 //! Derivatives of constrained forward dynamics.
 
 use super::Rows;
-use crate::constraints::{ConstraintMemory, constraint_jacobian, delassus};
-use crate::kinematics::{joint_transforms, seed_direction};
+use crate::ConstraintMemory;
+use crate::constraints::{constraint_jacobian, delassus};
+use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
+use crate::model::seed_direction;
 use crate::model::{Environment, Error, Model};
 use crate::scalar::Dual;
 use crate::workspace::Workspace;

@@ -2,7 +2,7 @@ use crate::constraints::constrained_forward_dynamics;
 use crate::model::description::{Anchor, Closure, Constraint};
 use crate::scalar::Dual;
 use crate::testing::{closed, floating_mixed_tree, four_bar, mixed_tree, state, tree};
-use crate::{Environment, Error, Model, SE3, Workspace, kinematics};
+use crate::{Environment, Error, Model, SE3, Workspace};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DVector;
@@ -144,7 +144,7 @@ fn derivatives_are_those_of_dual_numbers() {
             let along = |which: usize| {
                 let mut inputs = plain();
                 inputs[which] = match which {
-                    0 => kinematics::seed_direction(&model, &theta, &e),
+                    0 => crate::model::seed_direction(&model, &theta, &e),
                     1 => Dual::list(&dtheta, &e),
                     _ => Dual::list(&tau, &e),
                 };

@@ -1,8 +1,8 @@
 //! Positions as points of a manifold: integration, differences, and neutral configurations.
 
+use super::{Freedom, Model, Place};
 use crate::lie::{SE3, SO3, series};
 use crate::linalg::Vec3;
-use crate::model::{Freedom, Model, Place};
 use crate::scalar::{Dual, Real, Scalar};
 use crate::spatial::Twist;
 use alloc::sync::Arc;
