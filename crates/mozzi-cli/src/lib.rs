@@ -43,7 +43,7 @@ mod xacro_arguments;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use commands::{assemble, check, compute, convert, explain, info, screws, simulate, terms, tour};
 use failure::{Failure, Result};
-use mozzi_text as text;
+use mozzi_report::text;
 use std::io::Write;
 use std::process::ExitCode;
 

@@ -3,7 +3,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
-use mozzi_text::whole_file::WholeFile;
+use mozzi_report::whole_file::WholeFile;
 use std::fs::File;
 use std::io;
 use std::path::Path;

@@ -11,7 +11,7 @@ use crate::{html, load};
 use mozzi::FrameId;
 use mozzi::quantities::{Of, Query};
 use mozzi_engine::{Engine, Refusal};
-use mozzi_text::scalar;
+use mozzi_report::text::scalar;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::hash::{DefaultHasher, Hash, Hasher};

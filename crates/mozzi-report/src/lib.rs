@@ -20,8 +20,10 @@
 //! - `shapes`, each at a frame, and `meshes`: the files of meshes, gzipped;
 //! - `motion`: rows of a trajectory, as 32-bit floats (times: 64), and its contacts ([`Touches`]).
 //!
-//! [`play_html`] is the playground, which reads robots itself.
+//! [`play_html`] is the playground, which reads robots itself. [`compare`](mod@compare) explains why other libraries give other numbers;
+//! [`text`] has tables for terminals, [`whole_file`] writes files at once.
 mod base64;
+pub mod compare;
 mod drawing;
 mod error;
 pub mod figure;
@@ -33,7 +35,9 @@ pub mod pictures;
 mod play;
 #[cfg(test)]
 mod testing;
+pub mod text;
 mod touches;
+pub mod whole_file;
 
 pub use drawing::{Drawing, Meshes};
 pub use error::Error;

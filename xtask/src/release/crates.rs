@@ -19,7 +19,7 @@ pub const PUBLIC: [&str; 9] = [
 ];
 
 /// Parts of the command line: on crates.io because mozzi-cli needs them there, without a promise of stability.
-pub const PARTS: [&str; 3] = ["mozzi-text", "mozzi-report", "mozzi-compare"];
+pub const PARTS: [&str; 1] = ["mozzi-report"];
 
 /// Everything that is published.
 pub fn all() -> impl Iterator<Item = &'static str> {
