@@ -20,8 +20,8 @@
 //! - `shapes`, each at a frame, and `meshes`: the files of meshes, gzipped;
 //! - `motion`: rows of a trajectory, as 32-bit floats (times: 64), and its contacts ([`Touches`]).
 //!
-//! [`play_html`] is the playground, which reads robots itself. [`compare`](mod@compare) explains why other libraries give other numbers;
-//! [`text`] has tables for terminals, [`whole_file`] writes files at once.
+//! [`play_html`] is the playground, which reads robots itself. [`compare`](mod@compare) explains why other libraries
+//! give other numbers; [`text`] has tables for terminals, [`whole_file`] writes files at once.
 mod base64;
 pub mod compare;
 mod drawing;

@@ -29,8 +29,8 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot by the name of an embedded one, by that of the [mixed tree](crate::accuracy::mixed), or by the path of a URDF
-    /// file; the suffix `:floating` frees its base.
+    /// A robot by the name of an embedded one, by that of the [mixed tree](crate::accuracy::mixed), or by the path of a
+    /// URDF file; the suffix `:floating` frees its base.
     ///
     /// # Errors
     /// A message for a robot that cannot be read.
