@@ -7,8 +7,9 @@ use mozzi::Model;
 use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
 use mozzi_motion::trajectories::Reference;
 use mozzi_sim::Input;
-use mozzi_urdf::json::{File, Step, unknown_key};
+use mozzi_urdf::json::{At, File, Object};
 use serde_json::Value;
+use std::path::Path;
 
 /// A controller's file, and its robot if the file names one.
 pub struct Controller {
@@ -18,48 +19,50 @@ pub struct Controller {
     believed: Option<Model>,
 }
 
-/// Kinds of controllers and their entries; all of them accept `model`.
-const KINDS: [(&str, &[&str]); 4] = [
-    ("pd-gravity", &["p", "d"]),
-    ("computed-torque", &["p", "d"]),
-    ("task-space", &["frame", "p", "d", "posture_p", "posture_d"]),
-    ("impedance", &["frame", "stiffness", "damping", "posture_p", "posture_d"]),
+/// Kinds of controllers and their keys.
+const KINDS: [(&str, Object); 4] = [
+    ("pd-gravity", Object::of(&["controller", "p", "d"]).optional(MODEL)),
+    ("computed-torque", Object::of(&["controller", "p", "d"]).optional(MODEL)),
+    ("task-space", Object::of(&["controller", "frame", "p", "d", "posture_p", "posture_d"]).optional(MODEL)),
+    (
+        "impedance",
+        Object::of(&["controller", "frame", "stiffness", "damping", "posture_p", "posture_d"]).optional(MODEL),
+    ),
 ];
+const MODEL: &[&str] = &["model"];
 
 impl Controller {
     pub fn read(name: &str, robot: &RobotArguments) -> Result<Self> {
         let file = json_file::read(name)?;
-        let whole = |sentence: String| Failure::from(file.wrong(&[], sentence));
-        let wrong = |key: &str, sentence: String| Failure::from(file.wrong(&[Step::Key(key)], sentence));
-        let Value::Object(entries) = &file.value else { return Err(whole("is not a JSON object".into())) };
-        let kinds = KINDS.map(|(kind, _)| format!("`{kind}`")).join(", ");
-        let kind = match entries.get("controller") {
-            Some(Value::String(kind)) => kind.as_str(),
-            Some(other) => return Err(wrong("controller", format!("controller: is {other}, expected one of {kinds}"))),
-            None => return Err(whole(format!("`controller` is missing, expected one of {kinds}"))),
-        };
-        let Some((kind, needed)) = KINDS.iter().find(|(known, _)| *known == kind) else {
-            return Err(wrong("controller", format!("controller: is `{kind}`, expected one of {kinds}")));
-        };
-        let known = [&["controller"], *needed, &["model"]].concat();
-        if let Some(unknown) = entries.keys().find(|key| !known.contains(&key.as_str())) {
-            return Err(wrong(unknown, unknown_key(unknown, &format!("`{kind}`"), &known)));
-        }
-        if let Some(missing) = needed.iter().find(|key| !entries.contains_key(**key)) {
-            return Err(whole(format!("`{missing}` is missing; `{kind}` needs it")));
-        }
-        let believed = match entries.get("model") {
-            None => None,
-            Some(Value::String(name)) => Some(robot.load_other(name).map_err(|failure| match failure {
-                Failure::Wrong(sentence) => wrong("model", format!("model: {sentence}")),
-                Failure::Load(error) if error.diagnostics().is_empty() => wrong("model", format!("model: {error}")),
-                other => other, // points into the robot's own file
-            })?),
-            Some(other) => {
-                return Err(wrong("model", format!("model: is {other}, expected a file or an embedded robot")));
-            }
-        };
+        let root = At::root(&file, "the controller's file");
+        Object::of(&["controller"]).check_required(&root)?;
+        let kind = root.get("controller").word(&KINDS.map(|(kind, _)| kind))?;
+        KINDS.iter().filter(|(known, _)| *known == kind).try_for_each(|(_, keys)| keys.check_all(&root))?;
+        let at = root.get("model");
+        let believed = at.some(At::text)?.map(|name| Self::believed(&at, &name, robot)).transpose()?;
         Ok(Controller { kind: kind.to_string(), believed, file })
+    }
+
+    /// The controller's own model. Its errors have no words of its file: the controller's file may name any file.
+    fn believed(at: &At, name: &str, robot: &RobotArguments) -> Result<Model> {
+        let path = Path::new(name);
+        if path.exists() && !path.is_file() {
+            return Ok(at.wrong("a regular file, or an embedded robot")?);
+        }
+        let sentence = match robot.load_other(name) {
+            Ok(model) => return Ok(model),
+            Err(Failure::Wrong(sentence)) => sentence,
+            Err(Failure::Load(error)) => match error.errors().next() {
+                None => error.to_string(),
+                Some(first) => {
+                    let (count, line, code) = (error.errors().count(), first.line(), first.code());
+                    let errors = if count == 1 { "1 error".to_string() } else { format!("{count} errors") };
+                    format!("{name} is refused: {errors}, first {code} in line {line}; `mozzi check {name}` shows them")
+                }
+            },
+            Err(other) => return Err(other),
+        };
+        Ok(at.error(format_args!("model: {sentence}"))?)
     }
 
     /// For the page: "computed-torque of arm.json".
@@ -72,10 +75,9 @@ impl Controller {
         let model = self.believed.as_ref().unwrap_or(robot);
         if model.n() != robot.n() || model.nq() != robot.nq() {
             let (found, expected) = (model.n(), robot.n());
-            return Err(self.wrong(
-                "model",
-                format!("the robot has {found} velocities, expected {expected}, the number of the simulated robot"),
-            ));
+            return Ok(self.at().get("model").error(format_args!(
+                "model: the robot has {found} velocities, expected {expected}, the number of the simulated robot"
+            ))?);
         }
         // one gain for each velocity of a joint; a floating base has no motors
         let base = model.base().velocities();
@@ -96,25 +98,23 @@ impl Controller {
         })
     }
 
-    fn wrong(&self, key: &str, sentence: impl std::fmt::Display) -> Failure {
-        self.file.wrong(&[Step::Key(key)], format!("{key}: {sentence}")).into()
+    fn at(&self) -> At<'_> {
+        At::root(&self.file, "the controller's file")
     }
 
     fn frame(&self, model: &Model) -> Result<mozzi::FrameId> {
-        match &self.file.value["frame"] {
-            Value::String(name) => model.frame(name).map_err(|error| self.wrong("frame", error)),
-            other => Err(self.wrong("frame", format_args!("is {other}, expected the name of a frame"))),
-        }
+        let at = self.at().get("frame");
+        Ok(model.frame(&at.text()?).or_else(|why| at.error(format_args!("frame: {why}")))?)
     }
 
     /// One number for all, or a list.
     fn list(&self, key: &str, count: usize) -> Result<Vec<f64>> {
-        let value = &self.file.value[key];
-        let wrong = || self.wrong(key, format_args!("is {value}, expected a number, or a list of {count}"));
-        match value {
-            Value::Array(list) if list.len() == count => list.iter().map(|x| x.as_f64().ok_or_else(wrong)).collect(),
-            other => Ok(vec![other.as_f64().ok_or_else(wrong)?; count]),
-        }
+        let at = self.at().get(key);
+        Ok(match at.value {
+            Value::Number(_) => vec![at.number()?; count],
+            Value::Array(list) if list.len() == count => at.numbers()?,
+            _ => at.wrong(format_args!("a number, or a list of {count}"))?,
+        })
     }
 
     fn six(&self, key: &str) -> Result<[f64; 6]> {

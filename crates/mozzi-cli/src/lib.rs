@@ -20,6 +20,7 @@ mod log;
 mod motors;
 mod numbers;
 mod output;
+mod outputs;
 mod places;
 mod progress;
 mod quantity;
@@ -239,17 +240,29 @@ Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 
   .arrow .csv      one column per entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
 NaN in a state gives NaN in the results of that state only.";
 
-/// The arguments; flags that have no effect are an error.
-fn parsed() -> Result<Arguments, clap::Error> {
-    let mut program = Arguments::command();
+/// The program whose arguments may be negative numbers: `--cutoff -1` is a wrong number, not an unknown flag.
+fn numeric(program: clap::Command) -> clap::Command {
+    let numeric = |argument: clap::Arg| match argument.get_action().takes_values() {
+        true => argument.allow_negative_numbers(true),
+        false => argument,
+    };
+    program.mut_subcommands(|command| command.mut_args(numeric))
+}
+
+/// The arguments, and whether their outputs can be written; flags that have no effect are an error.
+fn parsed() -> Result<(Arguments, Result<()>), clap::Error> {
+    let mut program = numeric(Arguments::command());
     let matches = program.try_get_matches_from_mut(std::env::args_os())?;
     effect::check(&mut program, &matches)?;
-    Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut program))
+    let outputs = outputs::check(&program, &matches);
+    let arguments = Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut program))?;
+    Ok((arguments, outputs))
 }
 
 /// The program.
 pub fn main() -> ExitCode {
-    let arguments = match parsed() {
+    mozzi_urdf::files::remember(); // so that no file that is read is overwritten
+    let (arguments, outputs) = match parsed() {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() && std::env::args_os().any(|word| is_odd(&word.to_string_lossy())) => {
             failure::write(&error.render().to_string()); // without colours
@@ -257,7 +270,7 @@ pub fn main() -> ExitCode {
         }
         Err(error) => error.exit(),
     };
-    let answer = run(&arguments);
+    let answer = outputs.and_then(|()| run(&arguments));
     let (text, code) = match answer {
         Ok(text) => (text, ExitCode::from(exit::SUCCESS)),
         Err(failure) => {

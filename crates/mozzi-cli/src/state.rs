@@ -74,6 +74,12 @@ impl MotionArguments {
 }
 
 impl StartArguments {
+    /// The name of the state that is asked for.
+    pub fn name<'a>(&'a self, model: &Model) -> Option<&'a str> {
+        let is_state = |text: &&str| model.state_names().any(|name| name == *text);
+        self.state.as_deref().or(self.theta.as_deref().filter(is_state))
+    }
+
     /// (θ, θ̇).
     pub fn read(&self, model: &Model) -> Result<(Vec<f64>, Vec<f64>)> {
         let [state, theta, dtheta] = [&self.state, &self.theta, &self.dtheta].map(Option::as_deref);

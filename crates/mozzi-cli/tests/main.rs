@@ -18,6 +18,7 @@ mod ground;
 mod identify;
 mod identify_files;
 mod ik;
+mod inputs_and_outputs;
 mod interrupt;
 mod logs;
 mod motion;

@@ -27,7 +27,7 @@ const MOTION: [&str; 6] = [
     "unknown_element",
 ];
 
-const REMARKS: [&str; 12] = [
+const REMARKS: [&str; 13] = [
     "continuous_limits",
     "contradictory_limits",
     "ignored_limit",
@@ -40,6 +40,7 @@ const REMARKS: [&str; 12] = [
     "stray_text",
     "undeclared_prefix",
     "xacro_warning",
+    "zero_limits",
 ];
 
 /// The consequence of a warning of this code for the results.

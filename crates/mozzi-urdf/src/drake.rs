@@ -1,5 +1,5 @@
 //! Drake's extensions of URDF, as Drake's parser reads them: `<drake:joint>` of the types ball, planar, screw and
-//! universal; `drake:rotor_inertia` and `drake:gear_ratio` of an actuator; `<drake:ball_constraint>`.
+//! universal; `<drake:ball_constraint>`. Rotors are in `transmission.rs`.
 
 use crate::axis;
 use crate::context::Context;
@@ -7,7 +7,6 @@ use crate::element::Element;
 use crate::extension;
 use crate::finding::Finding;
 use crate::places::{Place, Places};
-use crate::spelling::did_you_mean;
 use crate::vocabulary::shown;
 use core::f64::consts::TAU;
 use mozzi::model::description::{Anchor, Constraint};
@@ -58,72 +57,6 @@ pub(crate) fn check_universal(direction: Option<&Element>, cx: &mut Context) {
     }
 }
 
-/// Adds the rotors of all actuators to their joints: the armature is ratio² × inertia.
-pub(crate) fn rotors(root: &Element, description: &mut Description, places: &mut Places, cx: &mut Context) {
-    for element in root.elements() {
-        match element.written_name() {
-            "transmission" => transmission(&element, description, places, cx),
-            "joint" | "drake:joint" => {
-                let Some(name) = element.attribute("name") else { continue };
-                let joint = element.called(format!("joint `{}`", shown(name.text)));
-                // Drake's documentation puts them in an actuator of the joint
-                for holder in joint.elements().filter(|child| child.written_name() == "actuator").chain([joint.clone()])
-                {
-                    if holder.name() == "actuator" {
-                        check_words(&holder, cx);
-                    }
-                    add(&holder, name.text, description, places, cx);
-                }
-            }
-            _ => {}
-        }
-    }
-}
-
-fn transmission(element: &Element, description: &mut Description, places: &mut Places, cx: &mut Context) {
-    let named = element.attribute("name").map_or_else(String::new, |name| format!(" `{}`", shown(name.text)));
-    let element = element.called(format!("transmission{named}"));
-    let Some(actuator) = child(&element, "actuator") else { return };
-    check_words(&actuator, cx);
-    if rotor(&actuator).is_none() {
-        return;
-    }
-    let kind = child(&element, "type")
-        .map_or_else(|| element.attribute("type").map_or("", |value| value.text), |kind| kind.text());
-    if !kind.contains("SimpleTransmission") {
-        let message = format!(
-            "{}: its rotor is ignored: the type is `{}`, expected a SimpleTransmission",
-            element.subject,
-            shown(kind.trim())
-        );
-        cx.findings.add(Finding::warning("ignored_property", actuator.span(), message));
-        return;
-    }
-    let Some(joint) = child(&element, "joint") else {
-        let message = format!("{}: has a rotor and no <joint> that turns it", element.subject);
-        cx.findings.error("missing_element", element.span(), message);
-        return;
-    };
-    let Some(name) = joint.required_name("name", cx) else { return };
-    if find(description, name.text).is_none() && !description.joints.iter().any(|joint| is_part(&joint.name, name.text))
-    {
-        let message = format!("{}: joint: there is no joint `{}`", element.subject, shown(name.text));
-        let help = did_you_mean(name.text, description.joints.iter().map(|joint| joint.name.as_str()).take(1000));
-        cx.findings.add(Finding::error("unknown_joint", name.span, message).maybe_help(help));
-        return;
-    }
-    if find(description, name.text).is_some_and(|i| description.joints[i].limits.effort == Some(0.0)) {
-        let message = format!(
-            "{}: its rotor is ignored: joint `{}` has the effort limit 0, and Drake gives it no actuator",
-            element.subject,
-            shown(name.text)
-        );
-        cx.findings.add(Finding::warning("ignored_property", actuator.span(), message));
-        return;
-    }
-    add(&actuator, name.text, description, places, cx);
-}
-
 /// `<drake:ball_constraint>`: point P of body A and point Q of body B coincide.
 pub(crate) fn ball_constraint(element: &Element, description: &mut Description, places: &mut Places, cx: &mut Context) {
     const PREFIX: &str = "drake:ball_constraint";
@@ -159,44 +92,9 @@ pub(crate) fn ball_constraint(element: &Element, description: &mut Description, 
 }
 
 /// Reports the effects of Drake's other elements in an actuator.
-fn check_words(actuator: &Element, cx: &mut Context) {
+pub(crate) fn check_words(actuator: &Element, cx: &mut Context) {
     for word in actuator.elements().filter(|child| child.written_name().starts_with("drake:")) {
         extension::element(&word, actuator, cx);
-    }
-}
-
-/// Whether a joint is in the series that replaced a joint of several axes.
-fn is_part(name: &str, whole: &str) -> bool {
-    name.strip_prefix(whole).is_some_and(|rest| rest.starts_with('.'))
-}
-
-fn find(description: &Description, name: &str) -> Option<usize> {
-    description.joints.iter().position(|joint| joint.name == name)
-}
-
-/// The inertia of a rotor in an actuator.
-fn rotor<'a>(holder: &Element<'a>) -> Option<Element<'a>> {
-    child(holder, "drake:rotor_inertia")
-}
-
-/// Adds the rotor of an actuator, if it has one, to its joint.
-fn add(holder: &Element, joint: &str, description: &mut Description, places: &mut Places, cx: &mut Context) {
-    let Some(inertia) = rotor(holder) else { return };
-    let ratio = child(holder, "drake:gear_ratio").map_or(Some([1.0]), |ratio| value(&ratio, cx));
-    let (Some([armature]), Some([ratio])) = (value(&inertia, cx), ratio) else { return };
-    let armature = ratio * ratio * armature;
-    let moving = find(description, joint)
-        .filter(|&i| matches!(description.joints[i].kind.name(), "revolute" | "prismatic" | "helical"));
-    match moving {
-        Some(i) => {
-            description.joints[i].armature += armature;
-            places.joints[i].set("armature", inertia.span());
-        }
-        None if armature != 0.0 => {
-            let message = format!("{}: is ignored: joint `{}` has not one axis", inertia.subject, shown(joint));
-            cx.findings.add(Finding::warning("ignored_property", inertia.span(), message));
-        }
-        None => {}
     }
 }
 
@@ -206,7 +104,7 @@ fn child<'a>(element: &Element<'a>, name: &str) -> Option<Element<'a>> {
 }
 
 /// The number in the attribute `value`.
-fn value(element: &Element, cx: &mut Context) -> Option<[f64; 1]> {
+pub(crate) fn value(element: &Element, cx: &mut Context) -> Option<[f64; 1]> {
     let value = element.required("value", cx)?;
     element.vector::<1>("value", &value, cx)
 }

@@ -7,7 +7,7 @@ use crate::spelling::nearest;
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
 
 #[rustfmt::skip] // code, meaning, remedy
-const CODES: [Entry; 71] = [
+const CODES: [Entry; 74] = [
     ("circular_mimic",
         "A mimic joint follows itself, directly or over other mimic joints. Its position is then undefined.",
         "remove one of the <mimic> elements"),
@@ -57,12 +57,16 @@ const CODES: [Entry; 71] = [
          controller in Drake's words; gravity that is switched off, or a spring, in Gazebo's settings; gravity, a \
          fluid or changed masses in MuJoCo's. The robot is computed without it.",
         "add its effect to the joint torques or applied wrenches; or remove it"),
+    ("ignored_limit",
+        "A limit that nothing here uses: of jerk; or of acceleration in a URDF of a version before 1.2, in which \
+         urdfdom ignores it, too.",
+        "remove it; or declare the version, <robot version=\"1.2\">"),
     ("ignored_property",
         "A planar or floating joint has limits, damping or friction. URDF has one number for them, but such a \
          joint both slides and turns, and URDF does not define which of the two is meant. Likewise limits and \
-         friction of Drake's ball and universal joints; and Drake's rotors (`drake:rotor_inertia`) where Drake has \
-         none: in a transmission that is not simple, on a joint that has not one axis, or whose effort limit is 0. The \
-         property is ignored.",
+         friction of Drake's ball and universal joints; and rotors of transmissions (`drake:rotor_inertia`, \
+         `motorInertia`) where Drake has none: in a transmission that is not simple, on a joint that has not one axis, or \
+         (Drake's) whose effort limit is 0. The property is ignored.",
         "remove it, or build the joint from joints of one axis, each with its own property"),
     ("ignored_quaternion",
         "An origin has a quaternion, `quat_xyzw`, which URDF defines from version 1.1 on. The file declares an \
@@ -205,6 +209,11 @@ const CODES: [Entry; 71] = [
         "More than 64 namespaces are in scope at one place, or more than 4096 are declared. No robot needs this; \
          the file is refused to bound time and memory.",
         "declare each namespace once, on the <robot>"),
+    ("turned_inertia",
+        "The moments of inertia of a link are those of its only collision shape, a box, cylinder or capsule, about other \
+         axes. A usual reason: the shape was turned by its <origin>, such as a wheel's cylinder, and the inertia was not. \
+         The numbers are used as given.",
+        "turn the inertia, too: exchange its moments, or give <inertial> the orientation of the shape's <origin>"),
     ("undeclared_prefix",
         "A prefix of a namespace is used but not declared. Other readers of robots accept this; the name is read as if \
          the prefix were declared.",
@@ -258,7 +267,8 @@ const CODES: [Entry; 71] = [
         "A vector has too few or too many numbers.",
         "separate numbers by spaces: `0 0 0.5`"),
     ("wrong_root",
-        "The root element of a URDF must be <robot>.",
+        "The root element of a URDF must be <robot>, that of MJCF <mujoco>; or the file is of another format, such as USD, \
+         SDF or JSON.",
         "check that this is the right file; a URDF begins with <robot name=\"…\">"),
     ("xacro",
         "A xacro file cannot be expanded: a name is not defined, a macro is called with other parameters than it has, an \
@@ -275,6 +285,10 @@ const CODES: [Entry; 71] = [
         "The axis of a moving joint, or a quaternion, has length 0.",
         "the axis of a joint is a unit vector in the joint's frame, such as `0 0 1`; `0 0 0 1` is the quaternion of no \
          rotation"),
+    ("zero_limits",
+        "All numbers of a joint's <limit> are 0. CAD programs write this if nobody entered the limits. Limits do not \
+         enter the dynamics, but a planner, or motors with limits, cannot move such a joint.",
+        "write the joint's limits; a joint that turns freely is of type `continuous`, one that does not move `fixed`"),
 ];
 
 /// A code of one language, or of either (URDF's if it is in both). MJCF shares the URDF codes that have the same

@@ -93,6 +93,7 @@ mod settings;
 mod source;
 mod spelling;
 mod syntax;
+mod transmission;
 mod version;
 mod visible;
 mod vocabulary;
@@ -107,7 +108,7 @@ pub use expansion::expanded;
 pub use explain::{codes, explain, nearest_code, remedy};
 pub use expressible::expressible;
 pub use mozzi::model::Severity;
-pub use mozzi_xacro::Arguments as XacroArguments;
+pub use mozzi_xacro::{Arguments as XacroArguments, files};
 #[cfg(feature = "pretty")]
 pub use pretty::Style;
 pub use settings::{Policy, Settings};
@@ -122,7 +123,6 @@ use mozzi::{Description, Model};
 use pages::Pages;
 use places::Places;
 use source::Source;
-use std::io::Read;
 use std::path::Path;
 
 /// A robot that was read, with the warnings.
@@ -166,15 +166,9 @@ pub fn load_with(path: impl AsRef<Path>, settings: impl Into<Settings>) -> Resul
 }
 
 fn file_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
-    let mut bytes = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| {
-        // one byte more than the limit, so that a file which is too large is detected without reading all of it
-        file.take(bytes::MOST_BYTES as u64 + 1).read_to_end(&mut bytes)
-    });
-    match read {
-        Ok(_) => Ok(bytes),
-        Err(source) => Err(LoadError::File { path: path.to_path_buf(), source }),
-    }
+    // one byte more than the limit, so that a file which is too large is detected without reading all of it
+    files::read_start(path, bytes::MOST_BYTES as u64 + 1)
+        .map_err(|source| LoadError::File { path: path.to_path_buf(), source })
 }
 
 /// Reads a text. Diagnostics use the name as its file name.

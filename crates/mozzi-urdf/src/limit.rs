@@ -4,7 +4,8 @@
 //! two of the robots of `example-robot-data`: wheels and knees) give effort and velocity but no bounds, and mean a
 //! joint that turns freely, not one that cannot move. Therefore a joint without any bound is unlimited, and if one
 //! bound is given, the other is URDF's 0; both cases are reported. From version 1.2 on URDF has no such default: a
-//! joint with one bound is unlimited, with a warning, and effort and velocity may be missing.
+//! joint with one bound is unlimited, with a warning, and effort and velocity may be missing; limits of acceleration
+//! are read.
 //!
 //! Limits do not enter the dynamics. Reversed limits, which other readers accept, are dropped with a warning: code that
 //! uses limits expects the lower one first.
@@ -20,6 +21,8 @@ use mozzi::model::description::Limits;
 /// How an infinite limit is written: urdfdom refuses a moving joint's <limit> without `effort` and `velocity`, reads a
 /// missing bound as 0, and does not read infinity.
 pub(crate) const UNLIMITED: f64 = f64::MAX;
+
+const DECLARE: &str = "declare the version: <robot version=\"1.2\">";
 
 /// The limits of a joint that moves.
 pub(crate) fn read(
@@ -44,7 +47,7 @@ pub(crate) fn read(
     limit.check_attributes(&LIMIT, cx);
     let is_misspelled = cx.findings.errors() > before;
     limit.check_children(&LIMIT, cx);
-    check_rates(limit, cx);
+    let acceleration = acceleration(limit, place, cx);
     for (name, attribute) in [("lower", "limits"), ("velocity", "velocity limit"), ("effort", "effort limit")] {
         if let Some(value) = limit.attribute(name) {
             place.set(attribute, value.span);
@@ -55,10 +58,12 @@ pub(crate) fn read(
         None => (false, None),
     };
     let [lower, upper, velocity, effort] = ["lower", "upper", "velocity", "effort"].map(&mut number);
+    let rates = [velocity.1, effort.1, acceleration];
     if kind == "continuous" {
         continuous(limit, joint, [lower.1, upper.1], cx);
-        return bounded(None, velocity.1, effort.1);
+        return bounded(None, rates);
     }
+    all_zero(limit, [lower, upper, velocity, effort], cx);
     let mut missing = |name: &str, help: &str| {
         if is_misspelled {
             return;
@@ -96,17 +101,13 @@ pub(crate) fn read(
         }
     }
     let position = position.filter(|bounds| in_order(*bounds, limit, cx));
-    bounded(position, velocity.1, effort.1)
+    bounded(position, rates)
 }
 
 /// Without the limits that are [`UNLIMITED`].
-fn bounded(position: Option<[f64; 2]>, velocity: Option<f64>, effort: Option<f64>) -> Limits {
-    let exists = |limit: &f64| *limit != UNLIMITED;
-    Limits {
-        position: position.filter(|bounds| *bounds != [-UNLIMITED, UNLIMITED]),
-        velocity: velocity.filter(exists),
-        effort: effort.filter(exists),
-    }
+fn bounded(position: Option<[f64; 2]>, rates: [Option<f64>; 3]) -> Limits {
+    let [velocity, effort, acceleration] = rates.map(|limit| limit.filter(|limit| *limit != UNLIMITED));
+    Limits { position: position.filter(|bounds| *bounds != [-UNLIMITED, UNLIMITED]), velocity, effort, acceleration }
 }
 
 /// Whether the lower bound is not above the upper one; the reverse is reported.
@@ -120,19 +121,39 @@ fn in_order([low, high]: [f64; 2], limit: &Element, cx: &mut Context) -> bool {
     low <= high
 }
 
-/// Checks that the limits of URDF 1.2, which mozzi does not use, are numbers of at least 0.
-fn check_rates(limit: &Element, cx: &mut Context) {
-    if cx.version < Version::WITH_ACCELERATION {
-        return;
-    }
+/// The limits of URDF 1.2: the smaller of `acceleration` and `deceleration`. A limit of jerk is named, and so are these
+/// limits in a file of an earlier version.
+fn acceleration(limit: &Element, place: &mut Place, cx: &mut Context) -> Option<f64> {
+    let is_earlier = cx.version < Version::WITH_ACCELERATION;
+    let mut least = None;
     for name in LIMIT.silent {
         let Some(value) = limit.attribute(name) else { continue };
-        if let Some([x]) = limit.vector::<1>(name, &value, cx)
-            && x < 0.0
-        {
-            let message = format!("{}: {name}: is {x}, expected at least 0", limit.subject);
-            cx.findings.add(Finding::error("negative_limit", value.span, message));
+        let why = match *name {
+            _ if is_earlier => "URDF has it from version 1.2 on",
+            "jerk" => "no motion here is planned within a limit of jerk",
+            _ => {
+                let Some([x]) = limit.vector::<1>(name, &value, cx) else { continue };
+                place.set("acceleration limit", value.span);
+                least = Some(least.map_or(x, |least: f64| least.min(x)));
+                continue;
+            }
+        };
+        let message = format!("{}: {name}: is ignored: {why}", limit.subject);
+        let finding = Finding::warning("ignored_limit", value.span.clone(), message);
+        cx.repeat(&format!("limit {name}"), if is_earlier { finding.help(DECLARE) } else { finding });
+        if !is_earlier {
+            limit.vector::<1>(name, &value, cx);
         }
+    }
+    least
+}
+
+/// Limits that a CAD program writes for a joint whose limits nobody entered. They do not enter the dynamics; planners
+/// and motors with limits cannot move such a joint.
+fn all_zero(limit: &Element, numbers: [(bool, Option<f64>); 4], cx: &mut Context) {
+    if numbers.iter().all(|number| *number == (true, Some(0.0))) {
+        let message = format!("{}: all its numbers are 0: the joint may not move", limit.subject);
+        cx.repeat("zero limits", Finding::warning("zero_limits", limit.span(), message));
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::context::Context;
 use crate::element::Element;
 use crate::finding::Finding;
+use crate::geometry;
 use crate::origin;
 use crate::places::Place;
 use crate::vocabulary::{INERTIA, INERTIAL, LINK, MASS, shown};
@@ -24,6 +25,9 @@ pub(crate) fn read(element: &Element, cx: &mut Context) -> (Link, Place) {
         ["mass", "inertia"].into_iter().for_each(|attribute| place.report(attribute)); // a misspelled <inertial> is not a missing one
     }
     let inertia = children.get("inertial").and_then(|inertial| read_inertial(inertial, &mut place, cx));
+    if let Some(G) = inertia {
+        geometry::inertia::check(&element, G, cx);
+    }
     (Link { name, inertia: inertia.unwrap_or_else(SpatialInertia::zero) }, place)
 }
 

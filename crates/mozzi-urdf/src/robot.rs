@@ -7,7 +7,7 @@ use crate::places::{Place, Places};
 use crate::spelling::did_you_mean;
 use crate::version::Version;
 use crate::vocabulary::{ROBOT, shown};
-use crate::{drake, floating, joint, link, series};
+use crate::{drake, floating, joint, link, series, transmission};
 use joint::Freedoms;
 use mozzi::model::description::ConstraintKind;
 use mozzi::{Base, Description};
@@ -65,7 +65,7 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
             _ => {}
         }
     }
-    drake::rotors(root, &mut description, &mut places, cx);
+    transmission::rotors(root, &mut description, &mut places, cx);
     let before = cx.findings.errors();
     root.check_children(&ROBOT, cx);
     places.is_partial = cx.findings.errors() > before; // a misspelled <link>, a macro
@@ -86,7 +86,11 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
 fn wrong_root(root: &Element) -> Finding {
     let message = format!("the root element is <{}>, expected <robot>", shown(root.written_name()));
     let help = match root.name() {
-        "sdf" => Some("this is an SDF model, not a URDF".to_string()),
+        "sdf" => Some(
+            "the file is SDF (Gazebo), which is not read: use the URDF that it was made from, or export one"
+                .to_string(),
+        ),
+        "COLLADA" => Some("the file is a mesh, not a robot".to_string()),
         other => did_you_mean(other, ["robot"]),
     };
     Finding::error("wrong_root", root.span(), message).maybe_help(help)

@@ -96,7 +96,10 @@ fn not_urdf(d: &Description) -> Vec<String> {
 
 fn robot(text: &mut String, d: &Description) -> fmt::Result {
     let drake = if d.constraints.is_empty() { "" } else { " xmlns:drake=\"https://drake.mit.edu\"" };
-    writeln!(text, "<?xml version=\"1.0\"?>\n<robot name=\"{}\"{drake}>", escaped(&d.name))?;
+    // limits of acceleration are URDF's from version 1.2 on
+    let is_later = d.joints.iter().any(|joint| joint.limits.acceleration.is_some());
+    let version = if is_later { " version=\"1.2\"" } else { "" };
+    writeln!(text, "<?xml version=\"1.0\"?>\n<robot name=\"{}\"{version}{drake}>", escaped(&d.name))?;
     // the parent of a floating base is an empty link
     let taken = |name: &str| d.links.iter().any(|link| link.name == name);
     let space = free(&d.free_joint.parent, taken);
@@ -216,9 +219,9 @@ fn dynamics(text: &mut String, joint: &Joint) -> fmt::Result {
 
 /// Written if urdfdom requires a limit or the joint has one; urdfdom then requires effort and velocity.
 fn limit(text: &mut String, joint: &Joint) -> fmt::Result {
-    let Limits { position, velocity, effort } = joint.limits;
+    let Limits { position, velocity, effort, acceleration } = joint.limits;
     let has_bounds = position.is_some() || matches!(joint.kind, JointKind::Screw(A) if A.is_prismatic());
-    if !has_bounds && velocity.is_none() && effort.is_none() {
+    if !has_bounds && velocity.is_none() && effort.is_none() && acceleration.is_none() {
         return Ok(());
     }
     text.write_str("    <limit")?;
@@ -226,6 +229,9 @@ fn limit(text: &mut String, joint: &Joint) -> fmt::Result {
     let bounds = [("lower", Some(lower)), ("upper", Some(upper))].into_iter().filter(|_| has_bounds);
     for (name, limit) in bounds.chain([("effort", effort), ("velocity", velocity)]) {
         write!(text, " {name}=\"{:?}\"", limit.unwrap_or(UNLIMITED).clamp(-UNLIMITED, UNLIMITED))?;
+    }
+    if let Some(limit) = acceleration {
+        write!(text, " acceleration=\"{limit:?}\"")?;
     }
     text.write_str("/>\n")
 }

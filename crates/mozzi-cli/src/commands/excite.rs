@@ -90,6 +90,14 @@ pub fn run(arguments: &ExciteArguments) -> Result<String> {
     let locks = edits::locks(&arguments.lock)?;
     let model = if locks.is_empty() { whole } else { whole.with_locked_joints(&locks)? };
     let options = arguments.options(&model)?;
+    for (name, [low, high]) in model.joint_names().zip(&options.limits.position) {
+        if low >= high {
+            failure::note(&format!(
+                "joint `{name}` has a range of 0 and does not move, so that its parameters are not determined; --range \
+                 {name}=LOW,HIGH gives it another"
+            ));
+        }
+    }
     let step = number("--step", &arguments.step)?;
     if !(step > 0.0 && options.duration / step < 1e7) {
         return Err(Failure::wrong(format!(
@@ -146,8 +154,8 @@ impl ExciteArguments {
         }
         for text in &self.within {
             let (name, corners) = edits::split("--within", text, "FRAME=x,y,z,X,Y,Z")?;
-            let [x, y, z, X, Y, Z] = array(&format!("--within {name}"), corners, ["x", "y", "z", "X", "Y", "Z"])?;
-            options.limits.boxes.push(Box3 { frame: model.frame(name)?, corners: [[x, y, z], [X, Y, Z]] });
+            let corners = edits::corners(&format!("--within {name}"), corners)?;
+            options.limits.boxes.push(Box3 { frame: model.frame(name)?, corners });
         }
         for text in &self.apart {
             const EXPECTED: &str = "FRAME,FRAME=r,R";

@@ -1,7 +1,7 @@
 //! `mozzi play`: the playground, in a file or served to this machine's browser.
 
 use crate::columns::save;
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::input;
 use crate::json::print;
 use crate::report::MeshArguments;
@@ -63,12 +63,7 @@ fn page(arguments: &PlayArguments, model: &Model) -> Result<String> {
 /// A name and the text of the robot's file, expanded if it is xacro.
 fn text(robot: &RobotArguments) -> Result<(String, String)> {
     let name_or_path = robot.model.as_str();
-    let cannot = |error: std::io::Error| Failure::wrong(format!("{name_or_path} cannot be read: {error}"));
-    let bytes = match name_or_path {
-        "-" => input::robot_text().map_err(cannot)?.to_vec(),
-        path => std::fs::read(path).map_err(cannot)?,
-    };
-    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let text = input::robot_file(name_or_path)?;
     let file = Path::new(input::name(name_or_path))
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());

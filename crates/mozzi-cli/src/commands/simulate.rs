@@ -4,10 +4,9 @@ use super::assemble::assembled;
 use super::outcome::Outcome;
 use super::simulate_page::{object, page, told};
 use crate::conditions::{EventArguments, happened};
-use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
 use crate::ground::{GroundArguments, settle};
-use crate::motors::{Followed, Limit, MotorArguments, or_hold};
+use crate::motors::{ACTUATORS, Followed, Limit, MotorArguments, or_hold};
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::report::{self, PageArguments};
@@ -15,7 +14,7 @@ use crate::robot::RobotArguments;
 use crate::state::StartArguments;
 use crate::tables::format::Format;
 use crate::text::scalar;
-use crate::workload::{BINARY, TEXT, Workload};
+use crate::workload::{self, BINARY, TEXT, Workload};
 use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
@@ -25,8 +24,9 @@ use mozzi_engine::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};
 use mozzi_motion::trajectories::Hold;
 use mozzi_report::{Motion, Touches};
-use mozzi_sim::Trajectory;
-use mozzi_sim::{Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned};
+use mozzi_sim::{
+    Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned, Trajectory, Zero,
+};
 use std::ops::ControlFlow;
 
 #[derive(Args, Debug)]
@@ -160,7 +160,7 @@ impl SimulateArguments {
             within_limits(model, &mut theta);
         }
         if !contacts.is_empty() {
-            settle(model, &contacts, &mut theta, is_own)?;
+            settle(self.ground.flag(), model, &contacts, &mut theta, is_own)?;
         }
         let (theta, dtheta) = assembled(model, theta, dtheta)?;
         let hold = Hold::new(&theta, model.n());
@@ -170,11 +170,18 @@ impl SimulateArguments {
             (None, Some(followed)) => followed.reference.duration(),
             (None, None) => 2.0,
         };
+        let actuated = self.motors.actuated(&self.robot, model, self.start.name(model))?;
+        let is_actuated = actuated.is_some();
+        let actuated: Box<dyn Input> = match actuated {
+            Some(actuated) => Box::new(actuated),
+            None => Box::new(Zero),
+        };
         let motors = self.motors.motors(model, controller.as_ref(), or_hold(followed.as_ref(), &hold), end)?;
         let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
-        let input = (&mut motors, self.motors.wrench(model, end)?);
+        let input = ((&mut motors, actuated), self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
         self.workload(model, end)?.check(self.allow_large)?;
+        workload::matrices(model)?;
         let options = self.options(end, limits)?;
         let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
         let names: Vec<String> = contacts.names().collect();
@@ -191,7 +198,11 @@ impl SimulateArguments {
             step: if end == 0.0 { number("--step", &self.step)? } else { options.step() },
             duration: end,
             account,
-            motors: controller.as_ref().map_or_else(|| self.motors.torque.clone(), Controller::name),
+            motors: match (&controller, &self.motors.torque) {
+                (Some(controller), _) => controller.name(),
+                (None, Some(torque)) => torque.clone(),
+                (None, None) => if is_actuated { ACTUATORS } else { "zero" }.to_string(),
+            },
             overloads: motors.overloads().cloned().collect(),
             stops,
             closing: (model.constraint_rows() > 0).then_some(closing),

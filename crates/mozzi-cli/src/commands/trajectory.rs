@@ -17,7 +17,8 @@ use clap::{Args, ValueEnum};
 use mozzi::{Model, SE3};
 use mozzi_motion::Goal;
 use mozzi_motion::trajectories::{
-    Cartesian, Desired, Ends, Limits, Line, Path, Profile, Reference, Shape, Spline, Timed, stretched, time_optimal,
+    Cartesian, Desired, Ends, Limits, Line, Path, Profile, Recorded, Reference, Shape, Spline, Timed, stretched,
+    time_optimal,
 };
 use serde_json::{Value, json};
 
@@ -33,7 +34,7 @@ pub struct TrajectoryArguments {
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     to: Option<String>,
     /// Via points in a table with columns theta_1 …; with a column t, passed at these times by a spline at rest at
-    /// both ends
+    /// both ends, or at the velocities dtheta_1 … and accelerations ddtheta_1 … of the table
     #[arg(long, value_name = "FILE")]
     via: Option<String>,
     /// The path: of the joints, or of the end effector to the pose of --to or of --position and --rpy
@@ -56,7 +57,7 @@ pub struct TrajectoryArguments {
     /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     max_velocity: Option<String>,
-    /// Acceleration limits, rad/s² or m/s² [default: none]
+    /// Acceleration limits, rad/s² or m/s² [default: the robot's, which URDF 1.2 has]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     max_acceleration: Option<String>,
     /// Torque limits, N m or N [default: the robot's]
@@ -163,28 +164,42 @@ impl TrajectoryArguments {
         })
     }
 
-    fn motion<'m>(&self, model: &'m Model, limits: &Limits) -> Result<Timed<Box<dyn Path + 'm>>> {
+    fn motion<'m>(&self, model: &'m Model, limits: &Limits) -> Result<Box<dyn Reference + 'm>> {
         let path: Box<dyn Path + 'm> = match &self.via {
             Some(file) => {
                 let samples = table_file::read(file, model)?;
-                let points = samples.need("theta", model)?.chunks(model.nq());
-                let points = &points.map(<[f64]>::to_vec).collect::<Vec<_>>();
+                let rows = |table: &[f64], width: usize| table.chunks(width).map(<[f64]>::to_vec).collect::<Vec<_>>();
+                let points = &rows(samples.need("theta", model)?, model.nq());
                 let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
-                match &samples.t {
-                    Some(times) => {
-                        check_times(&samples, times)?;
-                        if self.profile.is_some() {
-                            return Err(Failure::wrong(format!(
-                                "--profile and the column t of {file} both define the timing, expected one of them"
-                            )));
-                        }
-                        let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
-                        let span = times[times.len() - 1] - times[0];
-                        let duration = self.time.as_deref().map_or(Ok(span), |text| number("--time", text))?;
-                        return Ok(Timed::new(Box::new(spline), Profile::linear(duration)?));
+                let [dtheta, ddtheta] =
+                    ["dtheta", "ddtheta"].map(|name| samples.tables.get(name).map(|table| rows(table, model.n())));
+                if let Some(times) = &samples.t {
+                    check_times(&samples, times)?;
+                    if self.profile.is_some() {
+                        return Err(Failure::wrong(format!(
+                            "--profile and the column t of {file} both define the timing, expected one of them"
+                        )));
                     }
-                    None => Box::new(Spline::through(model, points, Ends::Natural).map_err(place)?),
+                    let span = times[times.len() - 1] - times[0];
+                    let duration = self.time.as_deref().map_or(Ok(span), |text| number("--time", text))?;
+                    if dtheta.is_none() && ddtheta.is_none() {
+                        let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
+                        return Ok(Box::new(Timed::new(spline, Profile::linear(duration)?)));
+                    }
+                    if self.time.is_some() && (duration - span).abs() > 1e-12 * span {
+                        return Err(Failure::wrong(format!(
+                            "--time is {duration} s, but {file} has velocities at times over {span} s; expected this \
+                             duration, or a table without velocities"
+                        )));
+                    }
+                    let begun: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
+                    let motion = Recorded::new(model, &begun, points, dtheta.as_deref(), ddtheta.as_deref());
+                    return Ok(Box::new(motion.map_err(place)?));
                 }
+                for (name, _) in [("dtheta", dtheta), ("ddtheta", ddtheta)].iter().filter(|(_, rows)| rows.is_some()) {
+                    failure::note(&format!("{file}: the columns {name}_… have no effect without a column t"));
+                }
+                Box::new(Spline::through(model, points, Ends::Natural).map_err(place)?)
             }
             None => self.path(model)?,
         };
@@ -203,7 +218,7 @@ impl TrajectoryArguments {
             (None, _) => stretched(model, &path, &shape(1.0)?, limits, PLACES)?,
             (Some(text), _) => shape(number("--time", text)?)?,
         };
-        Ok(Timed::new(path, profile))
+        Ok(Box::new(Timed::new(path, profile)))
     }
 
     fn path<'m>(&self, model: &'m Model) -> Result<Box<dyn Path + 'm>> {

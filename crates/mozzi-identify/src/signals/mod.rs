@@ -132,6 +132,10 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     let rows = log.check(model)?;
     let mut findings = rows.findings.clone();
     let rate = 1.0 / rows.step;
+    if !rate.is_finite() {
+        let found = format!("{:e} s", rows.step);
+        return Err(Error::BadOption { option: "the time between two rows", found, expected: "seconds".into() });
+    }
     let cutoff = match filter.cutoff {
         Cutoff::None => None,
         Cutoff::Hz(f) => Some(f),
@@ -149,19 +153,21 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     };
     let low_pass = cutoff.map(|f| LowPass::new(filter.order, f, rate)).transpose()?;
     // what the ends of a filtered run are worth: two periods of the cut-off
-    let trim = cutoff.map_or(0, |f| (2.0 * rate / f).ceil() as usize);
+    let two_periods = cutoff.map_or(0.0, |f| (2.0 * rate / f).ceil());
+    let trim = two_periods as usize;
     let mut samples =
         Samples { rate, cutoff, payload: log.payload, removed: vec![0.0; model.n()], ..Samples::default() };
     if log.dtheta.is_some() {
         (samples.coulomb, samples.stribeck) = (Some(Vec::new()), filter.friction.stribeck.map(|_| Vec::new()));
     }
     samples.wrenches = log.wrenches.iter().map(|(frame, _)| (*frame, Vec::new())).collect();
-    for run in rows.runs.iter().filter(|run| run.len() > 2 * trim + 10) {
+    for run in rows.runs.iter().filter(|run| run.len() > trim.saturating_mul(2).saturating_add(10)) {
         let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter };
         part.append(trim, &mut samples);
     }
     if samples.count() < 20 {
-        let why = format!("two periods of the cut-off, {trim} rows, are left out at both ends of each run");
+        let count = if two_periods < 1e9 { format!("{trim}") } else { format!("{two_periods:.1e}") };
+        let why = format!("two periods of the cut-off, {count} rows, are left out at both ends of each run");
         return Err(Error::TooShort { log: log.name.clone(), found: samples.count(), expected: 20, why });
     }
     let N = samples.count() as f64;

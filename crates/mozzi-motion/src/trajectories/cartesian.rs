@@ -96,4 +96,8 @@ impl Path for Cartesian {
     fn at(&self, s: f64) -> super::Point {
         self.spline.at(s)
     }
+
+    fn knots(&self) -> Vec<f64> {
+        self.spline.knots()
+    }
 }

@@ -109,6 +109,10 @@ impl Path for Spline {
         });
         between(&self.space, end - start, s - start, ends)
     }
+
+    fn knots(&self) -> Vec<f64> {
+        self.s.clone()
+    }
 }
 
 /// Rows y_{k+1} = y_k + (θ_{k+1} ⊖ θ_k): on a flat space, the positions.

@@ -3,6 +3,7 @@
 
 mod contact;
 mod files;
+pub(crate) mod inertia;
 mod mesh;
 mod read;
 mod shape;
@@ -78,6 +79,9 @@ fn parse_in(
     text: &[u8],
     arguments: &XacroArguments,
 ) -> Result<Geometry, LoadError> {
+    if text.trim_ascii_start().starts_with(b"{") {
+        return Ok(Geometry::default()); // JSON
+    }
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text, &mut findings));
     let (source, _) = expansion::prepare(source, arguments)?; // the model's reader reports warnings

@@ -37,7 +37,7 @@ fn children<'a>(element: &Element<'a>, name: &'static str) -> impl Iterator<Item
     element.elements().filter(move |child| child.name() == name && !child.has_prefix())
 }
 
-fn placed_form(element: &Element, cx: &mut Context) -> Option<(SE3, Form)> {
+pub(super) fn placed_form(element: &Element, cx: &mut Context) -> Option<(SE3, Form)> {
     let T = children(element, "origin").next().map_or(Some(SE3::identity()), |origin| origin::read(&origin, cx));
     let first = children(element, "geometry").next().and_then(|geometry| geometry.elements().next());
     let Some(form) = first else {

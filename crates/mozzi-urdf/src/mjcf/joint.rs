@@ -68,7 +68,7 @@ impl<'a> Model<'a> {
             true => JointKind::Ball(inside.T * Vec3(center)),
             false => screw.map_or(JointKind::Fixed, JointKind::Screw),
         };
-        added.joint.limits = Limits { position: limits, velocity: None, effort };
+        added.joint.limits = Limits { position: limits, effort, ..Limits::default() };
         (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
         (added.joint.stiffness, added.joint.spring_reference) = (stiffness, rest);
         (added.reference, added.spring_damper) = (reference, spring_damper);

@@ -38,6 +38,8 @@ impl Name {
 pub(crate) struct Link {
     pub name: Name,
     pub inertia: SpatialInertia,
+    /// The part of its weight that is compensated.
+    pub compensation: f64,
     pub place: Place,
 }
 
@@ -114,6 +116,7 @@ impl Tree {
         let world = Link {
             name: Name { given: Some("world".to_string()), otherwise: String::new() },
             inertia: SpatialInertia::zero(),
+            compensation: 0.0,
             place: Place::new(root.span()),
         };
         let place = Place::new(root.span());

@@ -17,8 +17,9 @@ use crate::robot::RobotArguments;
 use crate::state::WrenchArguments;
 use crate::task::TaskArguments;
 use crate::text::about;
+use crate::workload;
 use clap::{Arg, Args};
-use mozzi::quantities::{INPUTS, LIST, Of, Query};
+use mozzi::quantities::{Dim, INPUTS, LIST, Of, Query};
 use mozzi::{Environment, Model, Task, Vec3};
 use table::{Job, TableArguments};
 
@@ -61,6 +62,10 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
     };
     arguments.check_flags(query)?;
     let model = arguments.robot.load()?;
+    let squares = query.declaration().outputs.iter().any(|output| output.dims.starts_with(&[Dim::N, Dim::N]));
+    if squares {
+        workload::matrices(&model)?;
+    }
     let rows = arguments.task.rows()?;
     let query = arguments.subject(query, &rows, &model)?;
     let applied = arguments.wrenches.read(&model)?;

@@ -43,17 +43,7 @@ impl EditArguments {
         for text in &self.payload {
             let (name, list) = split("--payload", text, "FRAME=m, FRAME=m,cx,cy,cz, or these and six moments")?;
             let place = format!("--payload {name}");
-            let mut list = numbers(&place, list)?;
-            if !matches!(list.len(), 1 | 4 | 10) {
-                let found = list.len();
-                return Err(Failure::wrong(format!(
-                    "{place} has {found} entries, expected m, m and c, or all of {}",
-                    INERTIA.join(", ")
-                )));
-            }
-            list.resize(INERTIA.len(), 0.0);
-            let all = list.try_into().unwrap_or([0.0; 10]);
-            model = model.with_payload(model.frame(name)?, inertia(&place, all)?)?;
+            model = model.with_payload(model.frame(name)?, payload(&place, list)?)?;
         }
         let locks = locks(&self.lock)?;
         Ok(if locks.is_empty() { model } else { model.with_locked_joints(&locks)? })
@@ -65,9 +55,39 @@ pub fn locks(texts: &[String]) -> Result<Vec<(&str, f64)>> {
     let mut found = Vec::new();
     for text in texts {
         let (name, position) = split("--lock", text, "JOINT=POSITION")?;
+        if found.iter().any(|(known, _)| *known == name) {
+            return Err(Failure::wrong(format!("--lock {name} is given twice, expected one position for each joint")));
+        }
         found.push((name, number(format_args!("--lock {name}"), position)?));
     }
     Ok(found)
+}
+
+/// A payload: m; m and c; or these and six moments.
+pub fn payload(place: &str, list: &str) -> Result<SpatialInertia> {
+    let mut list = numbers(place, list)?;
+    let found = list.len();
+    list.resize(INERTIA.len(), 0.0);
+    match (found, list.try_into()) {
+        (1 | 4 | 10, Ok(all)) => inertia(place, all),
+        _ => Err(Failure::wrong(format!(
+            "{place} has {found} entries, expected m, m and c, or all of {}",
+            INERTIA.join(", ")
+        ))),
+    }
+}
+
+/// Two opposite corners of a box, the lower one first: x, y, z, X, Y, Z.
+pub fn corners(place: &str, list: &str) -> Result<[[f64; 3]; 2]> {
+    let [x, y, z, X, Y, Z] = array(place, list, ["x", "y", "z", "X", "Y", "Z"])?;
+    for (axis, low, high) in [("x", x, X), ("y", y, Y), ("z", z, Z)] {
+        if low > high {
+            return Err(Failure::wrong(format!(
+                "{place} goes from {low} to {high} in {axis}, expected the lower first"
+            )));
+        }
+    }
+    Ok([[x, y, z], [X, Y, Z]])
 }
 
 /// The parts before and after the last `=`.

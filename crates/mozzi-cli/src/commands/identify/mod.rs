@@ -9,7 +9,7 @@ mod page;
 use crate::columns::save;
 use crate::commands::convert::edits;
 use crate::failure::{self, Failure, Result};
-use crate::numbers::{array, number, numbers};
+use crate::numbers::{array, number};
 use crate::robot::RobotArguments;
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
@@ -215,16 +215,26 @@ impl IdentifyArguments {
     fn limits(&self) -> Result<Limits> {
         let mut limits = Limits::default();
         if let Some(text) = &self.total_mass {
-            limits.total_mass = Some(array("--total-mass", text, ["the mass", "its deviation"])?);
+            let [mass, deviation] = array("--total-mass", text, ["the mass", "its deviation"])?;
+            if !(mass > 0.0 && deviation > 0.0) {
+                return Err(Failure::wrong(format!(
+                    "--total-mass is {mass} kg with a deviation of {deviation} kg, expected two positive numbers"
+                )));
+            }
+            limits.total_mass = Some([mass, deviation]);
         }
         for text in &self.between {
             let (name, list) = edits::split("--between", text, "NAME=LOW,HIGH")?;
-            limits.between.push((name.to_string(), array(&format!("--between {name}"), list, ["low", "high"])?));
+            let [low, high] = array(&format!("--between {name}"), list, ["low", "high"])?;
+            if low > high {
+                return Err(Failure::wrong(format!("--between {name} is {low} to {high}, expected the lower first")));
+            }
+            limits.between.push((name.to_string(), [low, high]));
         }
         for text in &self.center_in {
             let (name, list) = edits::split("--center-in", text, "LINK=x,y,z,X,Y,Z")?;
-            let [x, y, z, X, Y, Z] = array(&format!("--center-in {name}"), list, ["x", "y", "z", "X", "Y", "Z"])?;
-            limits.center_of_mass.push((name.to_string(), [[x, y, z], [X, Y, Z]]));
+            let corners = edits::corners(&format!("--center-in {name}"), list)?;
+            limits.center_of_mass.push((name.to_string(), corners));
         }
         Ok(limits)
     }
@@ -242,9 +252,7 @@ impl IdentifyArguments {
                     Failure::wrong(format!("--known-payload is of log `{log}`, expected a number from 1 to {count}"))
                 })?;
             let place = format!("--known-payload {name}");
-            let mut list = numbers(&place, list)?;
-            list.resize(10, 0.0);
-            log.payload = Some((model.frame(frame)?, edits::inertia(&place, list.try_into().unwrap_or([0.0; 10]))?));
+            log.payload = Some((model.frame(frame)?, edits::payload(&place, list)?));
         }
         Ok(())
     }
