@@ -53,6 +53,7 @@ pub mod random;
 pub mod scalar;
 pub mod simulation;
 pub mod spatial;
+pub mod spelling;
 pub mod testing;
 mod workspace;
 
