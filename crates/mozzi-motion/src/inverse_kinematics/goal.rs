@@ -67,11 +67,18 @@ pub struct Residual {
 
 impl fmt::Display for Residual {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.angle, self.distance) {
-            (Some(angle), Some(distance)) => write!(f, "{angle:.2e} rad and {distance:.2e} m"),
-            (Some(angle), None) => write!(f, "{angle:.2e} rad"),
-            (None, Some(distance)) => write!(f, "{distance:.2e} m"),
-            (None, None) => Ok(()),
-        }
+        let angle = self.angle.map(|angle| format!("{} rad", three_digits(angle)));
+        let distance = self.distance.map(|distance| format!("{} m", three_digits(distance)));
+        let parts: Vec<String> = angle.into_iter().chain(distance).collect();
+        f.write_str(&parts.join(" and "))
+    }
+}
+
+/// "1.13", "0.0212", "2.1e-7".
+fn three_digits(x: f64) -> String {
+    match x.abs() {
+        size if (1.0..1e4).contains(&size) => format!("{x:.2}"),
+        size if (1e-2..1.0).contains(&size) => format!("{x:.3}"),
+        _ => format!("{x:.2e}"),
     }
 }
