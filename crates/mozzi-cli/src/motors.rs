@@ -2,15 +2,18 @@
 
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
-use crate::numbers::{WRENCH, array};
+use crate::numbers::{WRENCH, array, number};
 use crate::robot::RobotArguments;
 use crate::tables::read as table_file;
 use crate::tables::samples::Samples;
 use clap::{Args, ValueEnum};
-use mozzi::simulation::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
+use mozzi::simulation::{self, Contacts, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 use mozzi::{Base, Model, Wrench};
 use mozzi_motion::Policy;
 use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
+
+/// The default time constant of controllers, s.
+const RESPONSE: f64 = 0.1;
 
 #[derive(Args, Debug)]
 pub struct MotorArguments {
@@ -22,9 +25,14 @@ pub struct MotorArguments {
     /// floating base only the joints are followed, and the base's columns may be missing
     #[arg(long, value_name = "FILE", requires = "controller")]
     pub follow: Option<String>,
-    /// A controller in a JSON file; without --follow it holds the initial positions
-    #[arg(long, value_name = "FILE.json")]
+    /// A controller by its name (pd-gravity, computed-torque, task-space, impedance, standing), or in a JSON file;
+    /// without --follow it holds the initial positions
+    #[arg(long, value_name = "NAME|FILE.json")]
     pub controller: Option<String>,
+    /// Time constant of a controller's gains that no file gives, s: errors fall as in ë + 2ω ė + ω² e = 0 with ω = 1/T
+    /// [default: 0.1]
+    #[arg(long, value_name = "T", requires = "controller", allow_hyphen_values = true)]
+    response: Option<String>,
     /// How to treat the motors' effort limits
     #[arg(long, value_name = "WHAT", default_value = "report")]
     pub effort_limits: Limit,
@@ -106,7 +114,8 @@ impl MotorArguments {
     }
 
     pub fn controller(&self, robot: &RobotArguments) -> Result<Option<Controller>> {
-        self.controller.as_deref().map(|file| Controller::read(file, robot)).transpose()
+        let response = self.response.as_deref().map_or(Ok(RESPONSE), |text| number("--response", text))?;
+        self.controller.as_deref().map(|name| Controller::read(name, response, robot)).transpose()
     }
 
     /// The torques of --torque and of the controller.
@@ -115,11 +124,15 @@ impl MotorArguments {
         model: &'a Model,
         controller: Option<&'a Controller>,
         reference: &'a dyn Reference,
+        contacts: &Contacts,
         end: f64,
     ) -> Result<Box<dyn Input + 'a>> {
         let given: Box<dyn Input + 'a> = match self.torque.as_str() {
             "zero" => Box::new(Zero),
             "gravity-compensation" => Box::new(GravityCompensation::new(model)),
+            gravity if ["gravity", "gravity_compensation"].contains(&gravity) => {
+                Box::new(GravityCompensation::new(model))
+            }
             file => {
                 let samples = table_file::read(file, model)?;
                 let values = samples.need("tau", model)?.to_vec();
@@ -128,7 +141,7 @@ impl MotorArguments {
         };
         match controller {
             None => Ok(given),
-            Some(controller) => Ok(Box::new((given, controller.follow(model, reference)?))),
+            Some(controller) => Ok(Box::new((given, controller.follow(model, reference, contacts)?))),
         }
     }
 
