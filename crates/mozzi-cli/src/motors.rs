@@ -3,7 +3,7 @@
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
 use crate::input;
-use crate::numbers::{WRENCH, array};
+use crate::numbers::{WRENCH, array, number};
 use crate::robot::RobotArguments;
 use crate::tables::read as table_file;
 use crate::tables::samples::Samples;
@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use mozzi::{Base, Model, Wrench};
 use mozzi_motion::Policy;
 use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
-use mozzi_sim::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
+use mozzi_sim::{self, Contacts, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 use mozzi_urdf::mjcf::{self, Actuated};
 
 /// The value of --torque for the actuators of a file.
@@ -39,6 +39,9 @@ impl Input for Actuators {
     }
 }
 
+/// The default time constant of controllers, s.
+const RESPONSE: f64 = 0.1;
+
 #[derive(Args, Debug)]
 pub struct MotorArguments {
     /// Motor torques: zero, gravity-compensation, actuators (those of an MJCF file with the controls of --state, and
@@ -50,9 +53,14 @@ pub struct MotorArguments {
     /// floating base only the joints are followed, and the base's columns may be missing
     #[arg(long, value_name = "FILE", requires = "controller")]
     pub follow: Option<String>,
-    /// A controller in a JSON file; without --follow it holds the initial positions
-    #[arg(long, value_name = "FILE.json")]
+    /// A controller by its name (pd-gravity, computed-torque, task-space, impedance, standing), or in a JSON file;
+    /// without --follow it holds the initial positions
+    #[arg(long, value_name = "NAME|FILE.json")]
     pub controller: Option<String>,
+    /// Time constant of a controller's gains that no file gives, s: errors fall as in ë + 2ω ė + ω² e = 0 with ω = 1/T
+    /// [default: 0.1]
+    #[arg(long, value_name = "T", requires = "controller", allow_hyphen_values = true)]
+    response: Option<String>,
     /// How to treat the motors' effort limits
     #[arg(long, value_name = "WHAT", default_value = "report")]
     pub effort_limits: Limit,
@@ -182,7 +190,8 @@ impl MotorArguments {
     }
 
     pub fn controller(&self, robot: &RobotArguments) -> Result<Option<Controller>> {
-        self.controller.as_deref().map(|file| Controller::read(file, robot)).transpose()
+        let response = self.response.as_deref().map_or(Ok(RESPONSE), |text| number("--response", text))?;
+        self.controller.as_deref().map(|name| Controller::read(name, response, robot)).transpose()
     }
 
     /// The torques of --torque and of the controller.
@@ -191,11 +200,14 @@ impl MotorArguments {
         model: &'a Model,
         controller: Option<&'a Controller>,
         reference: &'a dyn Reference,
+        contacts: &Contacts,
         end: f64,
     ) -> Result<Box<dyn Input + 'a>> {
         let given: Box<dyn Input + 'a> = match self.torque.as_deref() {
             None | Some("zero" | ACTUATORS) => Box::new(Zero),
-            Some("gravity-compensation") => Box::new(GravityCompensation::new(model)),
+            Some("gravity-compensation" | "gravity" | "gravity_compensation") => {
+                Box::new(GravityCompensation::new(model))
+            }
             Some(file) => {
                 let samples = table_file::read(file, model)?;
                 let values = samples.need("tau", model)?.to_vec();
@@ -204,7 +216,7 @@ impl MotorArguments {
         };
         match controller {
             None => Ok(given),
-            Some(controller) => Ok(Box::new((given, controller.follow(model, reference)?))),
+            Some(controller) => Ok(Box::new((given, controller.follow(model, reference, contacts)?))),
         }
     }
 

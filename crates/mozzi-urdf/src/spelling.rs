@@ -1,5 +1,7 @@
 //! Did you mean …?
 
+use mozzi::spelling::distance;
+
 /// The known word nearest to an unknown one, if it is near enough for a misspelling.
 pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     if word.len() > 64 {
@@ -37,25 +39,6 @@ pub(crate) fn meant(word: &str) -> String {
 /// The same for the known word nearest to an unknown one, if it is near enough for a misspelling.
 pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(word, known).map(meant)
-}
-
-/// Letters to insert, drop, replace or swap with their neighbour (optimal string alignment).
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    let (mut before, mut previous): (Vec<usize>, Vec<usize>) = (Vec::new(), (0..=b.len()).collect());
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let same = usize::from(a[i - 1] != b[j - 1]);
-            let mut d = (previous[j] + 1).min(row[j - 1] + 1).min(previous[j - 1] + same);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                d = d.min(before[j - 2] + 1);
-            }
-            row.push(d);
-        }
-        (before, previous) = (previous, row);
-    }
-    previous.last().copied().unwrap_or(0)
 }
 
 #[cfg(test)]

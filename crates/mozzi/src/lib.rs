@@ -49,6 +49,7 @@ pub mod quantities;
 pub mod random;
 pub mod scalar;
 pub mod spatial;
+pub mod spelling;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
 mod workspace;

@@ -9,6 +9,7 @@
 mod bounds;
 mod goal;
 mod options;
+mod reach;
 mod secondary;
 mod step;
 

@@ -1,12 +1,20 @@
 //! Numbers and tables as text for a terminal: aligned at the decimal point, and not wider than the page if possible.
 
+mod columns;
+mod sections;
+mod wrap;
+
+pub use columns::{rows_of, table};
+pub use sections::{Sections, cut};
+pub use wrap::wrapped;
+
 use mozzi::Twist;
 use nalgebra::DMatrix;
 
-/// Columns of the page: the terminal's, or 112 without a terminal.
+/// Columns of the page: the terminal's, at most 120, or 80 without a terminal.
 pub fn page_width() -> usize {
     let terminal = terminal_size::terminal_size_of(std::io::stdout());
-    terminal.map_or(112, |(terminal_size::Width(columns), _)| usize::from(columns).clamp(72, 120))
+    terminal.map_or(80, |(terminal_size::Width(columns), _)| usize::from(columns).clamp(40, 120))
 }
 
 /// Columns that a text occupies: combining dots, as in θ̇, take none.
@@ -43,6 +51,12 @@ impl Decimals {
     /// About eight digits: for constants.
     pub fn long<'a>(values: impl IntoIterator<Item = &'a f64>) -> Self {
         Decimals { is_constant: true, ..Self::with_digits(values, 7) }
+    }
+
+    /// As [`of`](Self::of), where numbers up to `noise` are rounding errors and shown as 0.
+    pub fn above<'a>(noise: f64, values: impl IntoIterator<Item = &'a f64>) -> Self {
+        let decimals = Self::of(values.into_iter().filter(|x| x.abs() > noise));
+        Decimals { rounding: decimals.rounding.max(noise), ..decimals }
     }
 
     fn with_digits<'a>(values: impl IntoIterator<Item = &'a f64>, digits: i32) -> Self {
@@ -136,12 +150,6 @@ pub fn column_within(values: &[f64], largest: f64) -> Vec<String> {
     values.iter().map(|&x| decimals.show(x)).collect()
 }
 
-/// Numbers in a column, with a dash for missing ones.
-pub fn column_of_some(values: &[Option<f64>]) -> Vec<String> {
-    let decimals = Decimals::long(values.iter().flatten());
-    values.iter().map(|x| x.map_or("–".to_string(), |x| decimals.show(x))).collect()
-}
-
 /// Constant twists, in rows of six cells.
 pub fn twists(list: &[Twist]) -> Vec<Vec<String>> {
     let rows: Vec<[f64; 6]> = list.iter().map(|V| V.to_array()).collect();
@@ -170,28 +178,6 @@ pub fn flow(entries: &[String]) -> Vec<String> {
         }
     }
     lines
-}
-
-/// Cells in columns, two spaces between them. `align` has one 'l' or 'r' for each column; the last one applies to all
-/// further columns.
-pub fn table(rows: &[Vec<String>], align: &str) -> Vec<String> {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let aligns: Vec<char> = align.chars().collect();
-    let align = |c: usize| aligns.get(c).or(aligns.last()).copied().unwrap_or('l');
-    let widths: Vec<usize> = (0..columns)
-        .map(|c| rows.iter().filter_map(|row| row.get(c)).map(|cell| width(cell)).max().unwrap_or(0))
-        .collect();
-    let line = |row: &Vec<String>| {
-        let cells: Vec<String> = row.iter().enumerate().map(|(c, cell)| pad(cell, widths[c], align(c))).collect();
-        cells.join("  ").trim_end().to_string()
-    };
-    rows.iter().map(line).collect()
-}
-
-/// Converts columns to rows.
-pub fn rows_of(columns: Vec<Vec<String>>) -> Vec<Vec<String>> {
-    let count = columns.iter().map(Vec::len).max().unwrap_or(0);
-    (0..count).map(|r| columns.iter().map(|column| column.get(r).cloned().unwrap_or_default()).collect()).collect()
 }
 
 /// A computed matrix, in brackets; if it is too wide, in groups of numbered columns.
@@ -263,9 +249,18 @@ fn widest(lines: &[String]) -> usize {
 pub struct Page(String);
 
 impl Page {
-    /// One more line.
+    /// One more line; one that is wider than the page is wrapped.
     pub fn line(&mut self, line: impl AsRef<str>) -> &mut Self {
-        self.0.push_str(line.as_ref().trim_end());
+        for part in wrapped(line.as_ref().trim_end(), page_width()) {
+            self.0.push_str(&part);
+            self.0.push('\n');
+        }
+        self
+    }
+
+    /// A line as it is, however wide: a command to paste.
+    pub fn verbatim(&mut self, line: &str) -> &mut Self {
+        self.0.push_str(line);
         self.0.push('\n');
         self
     }
@@ -287,6 +282,11 @@ impl Page {
             self.line(format!("  {line}"));
         });
         self
+    }
+
+    /// The number of lines so far.
+    pub fn count(&self) -> usize {
+        self.0.lines().count()
     }
 
     /// The text.

@@ -2,6 +2,7 @@
 
 use super::ConfigurationSpace;
 use super::description::{self, Joint, JointKind};
+use super::frame::last_frame;
 use super::places::names_of;
 use super::tie::ties;
 use super::{
@@ -95,8 +96,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         description.links.iter().map(|link| &link.name).chain(description.frames.iter().map(|frame| &frame.name));
     let end_effector = match &description.end_effector {
         Some(name) => frame_names.into_iter().position(|known| known == name).map(FrameId),
-        None if leaves.len() == 1 => leaves.first().copied(),
-        None => None,
+        None => last_frame(&leaves, &frames, |leaf| description.links[leaf].name.as_str()),
     };
 
     let (joints, places) = couple(description, &moving_joints, &mut links);

@@ -1,6 +1,7 @@
 //! Errors, with the numbers that caused them.
 
 use super::check::{Problem, Severity};
+use crate::spelling::nearest;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{self, Write};
@@ -140,10 +141,11 @@ impl fmt::Display for Error {
                 write!(f, "there is no state `{name}`; this robot has {}", names(known))
             }
             Error::NoSuchQuantity { name, known } => {
-                write!(f, "there is no quantity `{name}`; expected one of {}", all_names(known))
+                let near = nearest(name, known, 3);
+                write!(f, "there is no quantity `{name}`; the nearest of {} are {}", known.len(), names(&near))
             }
             Error::NoEndEffector { leaves } => {
-                write!(f, "the end effector must be named: this robot ends in {}", names(leaves))
+                write!(f, "the end effector must be named: this robot ends in {}", first_names(leaves, 6))
             }
             Error::SingularMassMatrix { joint, pivot, diagonal, theta } => write!(
                 f,
@@ -171,19 +173,20 @@ fn list(problems: &[Problem]) -> String {
     })
 }
 
-fn all_names(names: &[&str]) -> String {
-    names.join(", ")
+pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {
+    first_names(names, 20)
 }
 
-pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {
+/// At most this many names; the others are counted.
+fn first_names<T: AsRef<str>>(names: &[T], most: usize) -> String {
     let mut text = String::new();
-    for (k, name) in names.iter().take(20).enumerate() {
+    for (k, name) in names.iter().take(most).enumerate() {
         let _ = write!(text, "{}`{}`", if k == 0 { "" } else { ", " }, name.as_ref());
     }
     match names.len() {
         0 => text.push_str("none"),
-        more if more > 20 => {
-            let _ = write!(text, " and {} more", more - 20);
+        more if more > most => {
+            let _ = write!(text, " and {} more", more - most);
         }
         _ => {}
     }

@@ -1,27 +1,42 @@
 //! `mozzi info`: joints, limits, links, masses and frames of a robot.
 
-use super::assemble;
+mod object;
+
+use super::{assemble, robots};
+use crate::angles;
 use crate::failure::Result;
 use crate::json;
-use crate::robot::{RobotArguments, Units};
-use crate::text::{Page, column, column_of_some, column_within, largest, rows_of, scalar, table, tuple};
-use clap::Args;
+use crate::robot::{RobotArguments, Units, screen};
+use crate::table::short;
+use crate::text::{Decimals, Page, Sections, column, column_within, largest, rows_of, scalar, table, tuple};
+use clap::{Arg, Args};
 use mozzi::model::State;
-use mozzi::model::description::{Anchor, Constraint, ConstraintKind, Gear, Joint, JointKind, Rotor};
-use mozzi::{ConstraintRank, Description, Error, Model, SE3, SpatialInertia};
+use mozzi::model::description::{Anchor, Constraint, ConstraintKind, Gear, Joint, Rotor};
+use mozzi::{ConstraintRank, Description, Error, FrameId, Model, SE3, SpatialInertia};
 use mozzi::{Freedom, Place};
-use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
 pub struct InfoArguments {
     #[command(flatten)]
     robot: RobotArguments,
+    /// Show all sections, however long
+    #[arg(long)]
+    all: bool,
+}
+
+/// Without a robot, the embedded ones are listed.
+pub fn model(argument: Arg) -> Arg {
+    argument.required(false).default_value("").hide_default_value(true)
 }
 
 pub fn run(arguments: &InfoArguments) -> Result<String> {
+    if arguments.robot.model.is_empty() {
+        return robots::list(arguments.robot.json);
+    }
     let model = arguments.robot.load()?;
     let poses = model.frame_poses(&model.neutral_configuration::<f64>())?;
-    Ok(if arguments.robot.json { json::print(&object(&model, &poses)) } else { page(&model, &poses) })
+    let most = if arguments.all { usize::MAX } else { screen(&model) };
+    Ok(if arguments.robot.json { json::print(&object::object(&model, &poses)) } else { page(&model, &poses, most) })
 }
 
 fn total_mass(robot: &Description) -> f64 {
@@ -55,9 +70,9 @@ pub fn headline(model: &Model) -> String {
 /// Gravity, and the frame of a wrench.
 pub fn surroundings(model: &Model) -> String {
     let tip = match model.end_effector() {
-        Ok(frame) => model.frame_name(frame).to_string(),
-        Err(Error::NoEndEffector { leaves }) => match leaves.get(..5) {
-            Some(some) if leaves.len() > 5 => format!("to be named, such as {}, …", some.join(", ")),
+        Ok(frame) => format!("{}{}", model.frame_name(frame), coinciding(model, frame)),
+        Err(Error::NoEndEffector { leaves }) => match leaves.get(..3) {
+            Some(some) if leaves.len() > 3 => format!("to be named, such as {}, …", some.join(", ")),
             _ => format!("to be named, such as {}", leaves.join(", ")),
         },
         Err(error) => error.to_string(),
@@ -65,39 +80,53 @@ pub fn surroundings(model: &Model) -> String {
     format!("gravity: {} m/s²; end effector: {tip}", tuple(&model.gravity().0))
 }
 
-fn page(model: &Model, poses: &[SE3]) -> String {
+/// " (`ee_link` has the same origin)", if the end effector was chosen among leaves in one place.
+fn coinciding(model: &Model, chosen: FrameId) -> String {
+    let robot = model.description();
+    let is_leaf = |name: &str| !robot.joints.iter().any(|joint| joint.parent == name);
+    let zero = model.neutral_configuration::<f64>();
+    let Ok(at) = model.forward_kinematics(&zero, chosen) else { return String::new() };
+    let is_there = |frame: FrameId| {
+        model.forward_kinematics(&zero, frame).is_ok_and(|T| (0..3).all(|k| (T.p.0[k] - at.p.0[k]).abs() < 1e-9))
+    };
+    let name = model.frame_name(chosen);
+    let others = model.frames().filter(|&(frame, other)| other != name && is_leaf(other) && is_there(frame));
+    let others: Vec<String> = others.map(|(_, other)| format!("`{other}`")).collect();
+    match (is_leaf(name) && robot.end_effector.is_none(), others.len()) {
+        (true, 1) => format!(" ({} has the same origin)", others[0]),
+        (true, 2..) => format!(" ({} have the same origin)", others.join(", ")),
+        _ => String::new(),
+    }
+}
+
+fn page(model: &Model, poses: &[SE3], most: usize) -> String {
     let (robot, units) = (model.description(), Units::of(model));
     let mut page = Page::default();
     page.line(headline(model)).line(surroundings(model));
+    let mut sections = Sections::default();
+    let units = format!("units: {}, {}, {}, s; a dash means none", units.input(0), units.input(1), units.input(3));
+    let list: Vec<&Joint> = model.moving_joints().collect();
+    let title = match list.first() {
+        Some(first) if list.len() > 1 && list.iter().all(|joint| kind(joint) == kind(first)) => {
+            format!("joints, all {}", kind(first))
+        }
+        _ => "joints".to_string(),
+    };
+    sections.add("joints", title, [joints(model), vec![units]].concat());
     if model.is_floating() {
-        page.title("floating base").lines(&base(model));
+        sections.add("base", "floating base", base(model));
     }
-    let several = several(model);
-    if !several.is_empty() {
-        page.title("joints of several axes").lines(&several);
-    }
-    page.title("joints").lines(&joints(model));
-    page.lines(&[format!("units: {}, {}, {}, s; a dash means none", units.input(0), units.input(1), units.input(3))]);
-    let rotors = rotors(robot);
-    if !rotors.is_empty() {
-        page.title("rotors that several joints turn: inertia [kg m² or kg], gears").lines(&rotors);
-    }
-    let constraints = constraints(model);
-    if !constraints.is_empty() {
-        page.title("constraints").lines(&constraints);
-    }
-    let states = states(model);
-    if !states.is_empty() {
-        page.title("states").lines(&states);
-    }
-    let folded = folded(model);
-    if !folded.is_empty() {
-        page.title("links merged into a moving body by fixed joints [kg]").lines(&folded);
-    }
-    page.title("links: mass [kg], centre of mass in the link's frame [m]").lines(&masses(robot));
-    page.title("links: inertia about the centre of mass, along the axes of the link's frame [kg m²]");
-    page.lines(&inertias(robot));
-    page.title("frames at θ = 0: origin in the base frame [m], rotation vector ω̂θ [rad]").lines(&frames(model, poses));
+    sections.add("joints of several axes", "joints of several axes", several(model));
+    sections.add("constraints", "constraints", constraints(model));
+    sections.add("states", "states", states(model));
+    sections.add("masses", "links: mass [kg], centre of mass in the link's frame [m]", masses(robot));
+    let frames_title = "frames at θ = 0: origin in the base frame [m], rotation vector ω̂θ [rad]";
+    sections.add("frames", frames_title, frames(model, poses));
+    let inertias_title = "links: inertia about the centre of mass, in the link's axes [kg m²]";
+    sections.add("inertias", inertias_title, inertias(robot));
+    sections.add("rotors", "rotors that several joints turn: inertia [kg m² or kg], gears", rotors(robot));
+    sections.add("merged links", "links merged into a moving body by fixed joints [kg]", folded(model));
+    sections.write(&mut page, most);
     page.end()
 }
 
@@ -135,6 +164,11 @@ fn several(model: &Model) -> Vec<String> {
     model.joints().zip(model.places()).filter_map(of_joint).collect()
 }
 
+/// An angle of a turning joint, in degrees with `--deg`.
+fn shown(joint: &Joint, x: f64) -> f64 {
+    if angles::are_degrees() && angles::turns(joint.kind) { x.to_degrees() } else { x }
+}
+
 fn joints(model: &Model) -> Vec<String> {
     let list: Vec<&Joint> = model.moving_joints().collect();
     let mut j = 0;
@@ -145,8 +179,11 @@ fn joints(model: &Model) -> Vec<String> {
             j.to_string()
         }
     };
-    let of =
-        |pick: fn(&Joint) -> Option<f64>| column_of_some(&list.iter().map(|joint| pick(joint)).collect::<Vec<_>>());
+    let of = |pick: fn(&Joint) -> Option<f64>| {
+        let values: Vec<Option<f64>> = list.iter().map(|joint| pick(joint)).collect();
+        let decimals = Decimals::of(values.iter().flatten());
+        values.into_iter().map(|x| x.map_or("–".to_string(), |x| decimals.show(x))).collect::<Vec<_>>()
+    };
     let text = |pick: &dyn Fn(&Joint) -> String| list.iter().map(|joint| pick(joint)).collect::<Vec<_>>();
     let follows = |joint: &Joint| match &joint.mimic {
         Some(mimic) => format!("{} · {} + {}", scalar(mimic.ratio), mimic.joint, scalar(mimic.offset)),
@@ -157,9 +194,9 @@ fn joints(model: &Model) -> Vec<String> {
         ("joint", text(&|joint| joint.name.clone())),
         ("type", text(&|joint| kind(joint).to_string())),
         ("moves", text(&|joint| joint.child.clone())),
-        ("lowest", of(|joint| joint.limits.position.map(|[low, _]| low))),
-        ("highest", of(|joint| joint.limits.position.map(|[_, high]| high))),
-        ("speed", of(|joint| joint.limits.velocity)),
+        ("lowest", of(|joint| joint.limits.position.map(|[low, _]| shown(joint, low)))),
+        ("highest", of(|joint| joint.limits.position.map(|[_, high]| shown(joint, high)))),
+        ("speed", of(|joint| joint.limits.velocity.map(|speed| shown(joint, speed)))),
         ("effort", of(|joint| joint.limits.effort)),
         ("damping", of(|joint| (joint.damping != 0.0).then_some(joint.damping))),
         ("friction", of(|joint| (joint.friction != 0.0).then_some(joint.friction))),
@@ -168,6 +205,9 @@ fn joints(model: &Model) -> Vec<String> {
         ("rests at", of(|joint| (joint.stiffness != 0.0).then_some(joint.spring_reference))),
         ("follows", text(&follows)),
     ];
+    if list.len() > 1 && list.iter().all(|joint| kind(joint) == kind(list[0])) {
+        columns.retain(|(name, _)| *name != "type"); // the title has it
+    }
     columns.retain(|(name, cells)| *name == "joint" || cells.iter().any(|cell| !cell.is_empty() && cell != "–"));
     let align: String = columns
         .iter()
@@ -222,7 +262,7 @@ fn rank(model: &Model) -> std::result::Result<ConstraintRank, Error> {
 }
 
 /// Positions of a state that fit into a line.
-const SHOWN: usize = 10;
+const SHOWN: usize = 2;
 
 /// The states that the robot's file names, and which of them is the start.
 fn states(model: &Model) -> Vec<String> {
@@ -232,7 +272,7 @@ fn states(model: &Model) -> Vec<String> {
         let more = if theta.len() > SHOWN { format!(" … {} in all", theta.len()) } else { String::new() };
         let is_start = if start == Some(name) { "the start" } else { "" };
         let moves = if dtheta.iter().any(|&x| x != 0.0) { "moving" } else { "at rest" };
-        let theta = format!("{}{more}", tuple(&theta[..theta.len().min(SHOWN)]));
+        let theta = format!("{}{more}", short(&theta[..theta.len().min(SHOWN)]));
         Some(
             [name, is_start, &format!("t = {} s", scalar(time)), moves, &format!("θ = {theta}")]
                 .map(str::to_string)
@@ -302,80 +342,4 @@ fn frames(model: &Model, poses: &[SE3]) -> Vec<String> {
         }
     }
     table(&rows_of(columns), "lr")
-}
-
-fn object(model: &Model, poses: &[SE3]) -> Value {
-    let robot = model.description();
-    let joint = |joint: &Joint| {
-        json!({
-            "name": joint.name,
-            "type": kind(joint),
-            "parent": joint.parent,
-            "child": joint.child,
-            "screw_axis": match joint.kind {
-                JointKind::Screw(A) => Some(json::vector(&A.twist().to_array())),
-                JointKind::Fixed | JointKind::Ball(_) | JointKind::Free => None,
-            },
-            "center": match joint.kind {
-                JointKind::Ball(center) => Some(json::vector(&center.0)),
-                _ => None,
-            },
-            "origin": json::pose(joint.origin),
-            "limits": {
-                "position": joint.limits.position.map(|limits| json::vector(&limits)),
-                "velocity": joint.limits.velocity,
-                "effort": joint.limits.effort,
-            },
-            "damping": joint.damping,
-            "friction": joint.friction,
-            "armature": joint.armature,
-            "stiffness": joint.stiffness,
-            "spring_reference": joint.spring_reference,
-            "mimic": joint.mimic.as_ref().map(|mimic| json!({
-                "joint": mimic.joint, "ratio": mimic.ratio, "offset": mimic.offset,
-            })),
-        })
-    };
-    let state = |name| {
-        let State { time, theta, dtheta } = model.state(name).ok()?;
-        Some(json!({ "name": name, "time": time, "theta": json::vector(&theta), "dtheta": json::vector(&dtheta) }))
-    };
-    json!({
-        "robot": robot.name,
-        "n": model.n(),
-        "nq": model.nq(),
-        "base": json::base(model),
-        "positions": json::names(model.position_names()),
-        "velocities": json::names(model.velocity_names()),
-        "moving_links": model.moving_links(),
-        "total_mass": total_mass(robot),
-        "gravity": json::vector(&model.gravity().0),
-        "rotors": robot.rotors.iter().map(|rotor| json!({
-            "name": rotor.name, "armature": rotor.armature,
-            "gears": rotor.gears.iter().map(|gear| json!({ "joint": gear.joint, "ratio": gear.ratio })).collect::<Value>(),
-        })).collect::<Value>(),
-        "constraints": model.constraints().iter().map(|constraint| json!({
-            "name": constraint.name, "kind": constraint.kind_name(), "rows": constraint.row_names(),
-        })).collect::<Value>(),
-        "constraint_rank": (model.constraint_rows() > 0).then(|| rank(model).ok().map(|rank| assemble::object(&rank))).flatten(),
-        "end_effector": model.end_effector().ok().map(|frame| model.frame_name(frame)),
-        "states": model.state_names().filter_map(state).collect::<Value>(),
-        "start": robot.start,
-        "independent_joints": model.joint_names().collect::<Vec<_>>(),
-        "joints": robot.joints.iter().map(joint).collect::<Value>(),
-        "links": robot.links.iter().map(|link| json!({
-            "name": link.name,
-            "mass": link.inertia.mass,
-            "center_of_mass": json::vector(&link.inertia.center_of_mass().0),
-            "rotational_inertia": json::rows(link.inertia.about_center_of_mass().to_mat3().rows()),
-        })).collect::<Value>(),
-        "bodies": model.folded_links().iter().map(|body| json!({
-            "joint": body.joint,
-            "mass": body.mass(),
-            "links": body.links.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
-        })).collect::<Value>(),
-        "frames": model.frames().zip(poses).map(|((_, name), &T)| json!({
-            "name": name, "home": json::pose(T),
-        })).collect::<Value>(),
-    })
 }

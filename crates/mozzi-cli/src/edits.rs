@@ -1,21 +1,23 @@
-//! `--payload`, `--inertia`, `--lock`: edits of the robot before it is written.
+//! `--payload`, `--inertia`, `--lock`, `--pin`: edits of the robot before it is used.
 
+use crate::angles::turns;
 use crate::failure::{Failure, Result};
-use crate::numbers::{array, number, numbers};
+use crate::numbers::{angle, array, number, numbers};
 use clap::Args;
 use mozzi::linalg::Sym3;
-use mozzi::{Model, SpatialInertia, Vec3};
+use mozzi::model::description::{Anchor, Constraint};
+use mozzi::{Base, Model, SpatialInertia, Vec3};
 
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub struct EditArguments {
-    /// Add a payload to a link or frame: its mass, kg, its centre of mass, m, and moments about that centre, kg m², in
-    /// the frame's axes [default: a point mass at the frame's origin]
-    #[arg(long, value_name = "FRAME=m[,cx,cy,cz[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]")]
+    /// Add a payload to a link or frame, the end effector if none is named: its mass, kg, its centre of mass, m, and
+    /// moments about that centre, kg m², in the frame's axes [default: a point mass at the frame's origin]
+    #[arg(long, value_name = "[FRAME=]m[,cx,cy,cz[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]")]
     payload: Vec<String>,
     /// Replace a link's inertia: as --payload, in the link's axes
     #[arg(long, value_name = "LINK=m,cx,cy,cz,Ixx,Ixy,Ixz,Iyy,Iyz,Izz")]
     inertia: Vec<String>,
-    /// Lock a joint at a position, rad or m, and its mimic joints with it
+    /// Lock a joint at a position, rad or m, and its mimic joints with it; θ then has no entry for them
     #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
     lock: Vec<String>,
 }
@@ -41,24 +43,29 @@ impl EditArguments {
             model = robot.build()?;
         }
         for text in &self.payload {
-            let (name, list) = split("--payload", text, "FRAME=m, FRAME=m,cx,cy,cz, or these and six moments")?;
+            let (name, list) = match text.rsplit_once('=') {
+                Some((name, list)) => (name.to_string(), list),
+                None => (model.frame_name(model.end_effector()?).to_string(), text.as_str()),
+            };
             let place = format!("--payload {name}");
-            model = model.with_payload(model.frame(name)?, payload(&place, list)?)?;
+            model = model.with_payload(model.frame(&name)?, payload(&place, list)?)?;
         }
-        let locks = locks(&self.lock)?;
+        let locks = locks(&self.lock, &model)?;
         Ok(if locks.is_empty() { model } else { model.with_locked_joints(&locks)? })
     }
 }
 
 /// Joints with their positions, from texts "JOINT=POSITION".
-pub fn locks(texts: &[String]) -> Result<Vec<(&str, f64)>> {
+pub fn locks<'t>(texts: &'t [String], model: &Model) -> Result<Vec<(&'t str, f64)>> {
     let mut found = Vec::new();
     for text in texts {
         let (name, position) = split("--lock", text, "JOINT=POSITION")?;
         if found.iter().any(|(known, _)| *known == name) {
             return Err(Failure::wrong(format!("--lock {name} is given twice, expected one position for each joint")));
         }
-        found.push((name, number(format_args!("--lock {name}"), position)?));
+        let is_turning = model.joints().any(|joint| joint.name == name && turns(joint.kind));
+        let place = format!("--lock {name}");
+        found.push((name, if is_turning { angle(place, position)? } else { number(place, position)? }));
     }
     Ok(found)
 }
@@ -88,6 +95,26 @@ pub fn corners(place: &str, list: &str) -> Result<[[f64; 3]; 2]> {
         }
     }
     Ok([[x, y, z], [X, Y, Z]])
+}
+
+/// The robot with frames pinned to {s} where they are at θ: a weld, or for FRAME=point a ball joint at its origin. The
+/// motors of a floating base are then named, so that gravity compensation knows that the base has none.
+pub fn pinned(model: Model, texts: &[String], theta: &[f64]) -> Result<Model> {
+    let mut robot = model.description().clone();
+    for text in texts {
+        let (name, how) = text.rsplit_once('=').unwrap_or((text, "weld"));
+        let T = model.forward_kinematics(theta, model.frame(name)?)?;
+        let closure = match how {
+            "weld" => Constraint::weld,
+            "point" => Constraint::point,
+            _ => return Err(Failure::wrong(format!("--pin {name} is `{how}`, expected weld or point"))),
+        };
+        robot.constraints.push(closure(format!("pin {name}"), Anchor::world(T), Anchor::frame(name)));
+    }
+    if robot.base == Base::Floating && robot.motors.is_none() {
+        robot.motors = Some(model.joints().map(|joint| joint.name.clone()).collect());
+    }
+    Ok(robot.build()?)
 }
 
 /// The parts before and after the last `=`.
