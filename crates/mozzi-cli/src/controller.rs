@@ -23,8 +23,8 @@ pub struct Controller {
     believed: Option<Model>,
 }
 
-/// Kinds of controllers and the keys of their files; without a frame it is the end effector, without gains of the posture
-/// these follow from the time constant.
+/// Kinds of controllers and the keys of their files; without a frame it is the end effector, without gains of the
+/// posture these follow from the time constant.
 const KINDS: [(&str, Object); 5] = [
     ("pd-gravity", Object::of(&["controller", "p", "d"]).optional(&["model"])),
     ("computed-torque", Object::of(&["controller", "p", "d"]).optional(&["model"])),

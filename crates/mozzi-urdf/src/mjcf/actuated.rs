@@ -7,7 +7,8 @@ use mozzi::{Error, Model, Scalar, SpatialInertia, Workspace};
 use std::cell::OnceCell;
 use std::ops::Range;
 
-/// The actuators of a file with constant controls, and its gravity compensation, as MuJoCo computes them. The forces of a joint's actuators together are clamped to its effort limit (`actuatorfrcrange`).
+/// The actuators of a file with constant controls, and its gravity compensation, as MuJoCo computes them. The forces of
+/// a joint's actuators together are clamped to its effort limit (`actuatorfrcrange`).
 pub struct Actuated {
     drives: Vec<Drive>,
     /// Largest |τ| of each velocity.
