@@ -61,7 +61,7 @@ fn limits(model: &Model, precision: Precision) -> Result<Vec<f64>, Error> {
     let epsilon = if precision == Precision::F64 { f64::EPSILON } else { f32::EPSILON.into() };
     let mut largest = vec![0.0_f64; model.n()];
     for seed in 1..=STATES {
-        let M = model.mass_matrix(&mozzi::testing::state(model, seed)[0])?;
+        let M = model.mass_matrix(&mozzi::random::state(model, seed)[0])?;
         largest.iter_mut().enumerate().for_each(|(j, largest)| *largest = largest.max(M[(j, j)]));
     }
     Ok(largest.into_iter().map(|x| 64.0 * epsilon * x).collect())

@@ -126,7 +126,7 @@ mod tests {
             let found = ordered(program.clone(), model.n());
             assert!(4 * alive(&found) < 3 * alive(&program), "{} of {}", alive(&found), alive(&program));
             assert_eq!(found.steps().len(), program.steps().len());
-            let state = mozzi::testing::state(&model, 1);
+            let state = mozzi::random::state(&model, 1);
             let inputs: Vec<&[f64]> = [&state[0], &state[1], &state[2], &state[1]]
                 .into_iter()
                 .take(program.inputs().len())

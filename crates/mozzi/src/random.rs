@@ -1,5 +1,8 @@
 //! Numbers that are the same on every machine.
 
+use crate::lie::SE3;
+use crate::model::{Freedom, Model};
+use crate::spatial::Twist;
 use alloc::vec::Vec;
 
 /// Uniform random numbers from a seed (Steele, Lea and Flood's SplitMix64).
@@ -35,4 +38,15 @@ impl Random {
     pub fn vector(&mut self, n: usize, size: f64) -> Vec<f64> {
         (0..n).map(|_| size * self.next()).collect()
     }
+}
+
+/// A random state (θ, θ̇, θ̈) of a model.
+pub fn state(model: &Model, seed: u64) -> [Vec<f64>; 3] {
+    let mut random = Random(seed + 4000);
+    let mut theta = random.vector(model.nq(), 3.0);
+    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
+        let pose = SE3::exp(Twist::from_array(random.array()) * 2.0).to_pose();
+        theta[place.positions()].copy_from_slice(&pose[..place.freedom.positions()]);
+    }
+    [theta, random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
 }

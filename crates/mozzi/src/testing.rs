@@ -3,13 +3,13 @@
 use crate::lie::SE3;
 use crate::linalg::{Sym3, Vec3};
 use crate::model::description::{Anchor, Closure, Constraint, Gear, Joint, JointKind, Mimic, Rotor};
-use crate::model::{Base, Description, Freedom, Model};
+use crate::model::{Base, Description, Model};
 use crate::scalar::Scalar;
 use crate::spatial::solids::Solid;
 use crate::spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
 use alloc::format;
 
-pub use crate::random::Random;
+pub use crate::random::{Random, state};
 
 /// A twist with entries in [−1, 1).
 pub fn twist(seed: u64) -> Twist {
@@ -166,17 +166,6 @@ pub fn floating_mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
 }
 
 pub use crate::model::seed_direction as moving;
-
-/// A random state (θ, θ̇, θ̈) of a model.
-pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {
-    let mut random = Random(seed + 4000);
-    let mut theta = random.vector(model.nq(), 3.0);
-    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
-        let pose = SE3::exp(Twist::from_array(random.array()) * 2.0).to_pose();
-        theta[place.positions()].copy_from_slice(&pose[..place.freedom.positions()]);
-    }
-    [theta, random.vector(model.n(), 2.0), random.vector(model.n(), 5.0)]
-}
 
 /// A planar four-bar linkage in the x-z plane: ground 0.9 m, crank 0.3 m, coupler 0.8 m, rocker 0.6 m, uniform rods of
 /// 1 kg a metre. The loop is closed by a hinge, five rows of which three are redundant. θ = 0 is not closed.

@@ -64,6 +64,7 @@ pub fn constrained_forward_dynamics<S: Scalar + From<C>, C: Scalar>(
 /// See [`constrained_forward_dynamics`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConstrainedForwardDynamics;
+#[doc(hidden)]
 impl Quantity for ConstrainedForwardDynamics {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -76,6 +77,7 @@ impl Quantity for ConstrainedForwardDynamics {
     .is_constrained()
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ConstrainedForwardDynamics {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

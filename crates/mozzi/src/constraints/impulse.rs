@@ -52,6 +52,7 @@ pub fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMem
 /// See [`constraint_impulse`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintImpulse;
+#[doc(hidden)]
 impl Quantity for ConstraintImpulse {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -63,6 +64,7 @@ impl Quantity for ConstraintImpulse {
     .is_constrained()
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ConstraintImpulse {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

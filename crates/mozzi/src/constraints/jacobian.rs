@@ -255,6 +255,7 @@ const ROWS: &[Dim] = &[Dim::Constraints];
 /// See [`constraint_jacobian`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintJacobian;
+#[doc(hidden)]
 impl Quantity for ConstraintJacobian {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -266,6 +267,7 @@ impl Quantity for ConstraintJacobian {
     .is_constrained()
     .at_rest();
 }
+#[doc(hidden)]
 impl Kernel for ConstraintJacobian {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -277,6 +279,7 @@ impl Kernel for ConstraintJacobian {
 /// See [`constraint_jacobian`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintBias;
+#[doc(hidden)]
 impl Quantity for ConstraintBias {
     type Kernel = ConstraintJacobian;
     const DECLARATION: Declaration = Declaration::new(
@@ -292,6 +295,7 @@ impl Quantity for ConstraintBias {
 /// See [`constraint_jacobian`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintResidual;
+#[doc(hidden)]
 impl Quantity for ConstraintResidual {
     type Kernel = ConstraintJacobian;
     const DECLARATION: Declaration = Declaration::new(

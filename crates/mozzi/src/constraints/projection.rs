@@ -51,6 +51,7 @@ pub fn constraint_projection<S: Scalar + From<C>, C: Scalar>(
 /// See [`constraint_projection`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintProjection;
+#[doc(hidden)]
 impl Quantity for ConstraintProjection {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -63,6 +64,7 @@ impl Quantity for ConstraintProjection {
     .at_rest()
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ConstraintProjection {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -109,6 +109,7 @@ pub(super) fn take_zeros<S: Scalar>(workspace: &mut Workspace<S>) -> Vec<S> {
 /// See [`bias_forces`].
 #[derive(Clone, Copy, Debug)]
 pub struct BiasForces;
+#[doc(hidden)]
 impl Quantity for BiasForces {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -119,6 +120,7 @@ impl Quantity for BiasForces {
     )
     .uses(Uses::ALL);
 }
+#[doc(hidden)]
 impl Kernel for BiasForces {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -130,6 +132,7 @@ impl Kernel for BiasForces {
 /// See [`velocity_product`].
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityProduct;
+#[doc(hidden)]
 impl Quantity for VelocityProduct {
     type Kernel = BiasForces;
     const DECLARATION: Declaration = Declaration::new(
@@ -143,6 +146,7 @@ impl Quantity for VelocityProduct {
 /// See [`gravity_forces`].
 #[derive(Clone, Copy, Debug)]
 pub struct GravityForces;
+#[doc(hidden)]
 impl Quantity for GravityForces {
     type Kernel = BiasForces;
     const DECLARATION: Declaration = Declaration::new(
@@ -158,6 +162,7 @@ impl Quantity for GravityForces {
 /// See [`tip_forces`].
 #[derive(Clone, Copy, Debug)]
 pub struct TipForces;
+#[doc(hidden)]
 impl Quantity for TipForces {
     type Kernel = BiasForces;
     const DECLARATION: Declaration = Declaration::new(

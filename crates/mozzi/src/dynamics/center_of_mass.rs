@@ -55,6 +55,7 @@ fn one_over_mass<S: Scalar + From<C>, C: Scalar>(model: &Model<C>) -> S {
 /// See [`center_of_mass`].
 #[derive(Clone, Copy, Debug)]
 pub struct CenterOfMass;
+#[doc(hidden)]
 impl Quantity for CenterOfMass {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -65,6 +66,7 @@ impl Quantity for CenterOfMass {
     )
     .needs_mass();
 }
+#[doc(hidden)]
 impl Kernel for CenterOfMass {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -76,6 +78,7 @@ impl Kernel for CenterOfMass {
 /// ċ = f/m, f the linear [`momentum`].
 #[derive(Clone, Copy, Debug)]
 pub struct CenterOfMassVelocity;
+#[doc(hidden)]
 impl Quantity for CenterOfMassVelocity {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -86,6 +89,7 @@ impl Quantity for CenterOfMassVelocity {
     )
     .needs_mass();
 }
+#[doc(hidden)]
 impl Kernel for CenterOfMassVelocity {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -98,6 +102,7 @@ impl Kernel for CenterOfMassVelocity {
 /// c̈ = ḟ/m, f the linear [`momentum`].
 #[derive(Clone, Copy, Debug)]
 pub struct CenterOfMassAcceleration;
+#[doc(hidden)]
 impl Quantity for CenterOfMassAcceleration {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -108,6 +113,7 @@ impl Quantity for CenterOfMassAcceleration {
     )
     .needs_mass();
 }
+#[doc(hidden)]
 impl Kernel for CenterOfMassAcceleration {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -120,6 +126,7 @@ impl Kernel for CenterOfMassAcceleration {
 /// The linear rows of [`momentum_matrix`] over the mass.
 #[derive(Clone, Copy, Debug)]
 pub struct CenterOfMassJacobian;
+#[doc(hidden)]
 impl Quantity for CenterOfMassJacobian {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -130,6 +137,7 @@ impl Quantity for CenterOfMassJacobian {
     )
     .needs_mass();
 }
+#[doc(hidden)]
 impl Kernel for CenterOfMassJacobian {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -11,6 +11,7 @@ use crate::spatial::Wrench;
 /// See [`momentum_matrix`](super::momentum_matrix).
 #[derive(Clone, Copy, Debug)]
 pub struct CentroidalMomentumMatrix;
+#[doc(hidden)]
 impl Quantity for CentroidalMomentumMatrix {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -21,6 +22,7 @@ impl Quantity for CentroidalMomentumMatrix {
     )
     .needs_mass();
 }
+#[doc(hidden)]
 impl Kernel for CentroidalMomentumMatrix {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -35,6 +37,7 @@ impl Kernel for CentroidalMomentumMatrix {
 /// See [`momentum_rate`](super::momentum_rate()).
 #[derive(Clone, Copy, Debug)]
 pub struct CentroidalMomentumBias;
+#[doc(hidden)]
 impl Quantity for CentroidalMomentumBias {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -46,6 +49,7 @@ impl Quantity for CentroidalMomentumBias {
     .needs_mass()
     .at_rest();
 }
+#[doc(hidden)]
 impl Kernel for CentroidalMomentumBias {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -113,6 +113,7 @@ pub fn mass_matrix_rate<S: Scalar + From<C>, C: Scalar>(
 /// See [`coriolis_matrix`]. The kernel computes Ṁ instead if that output is kept.
 #[derive(Clone, Copy, Debug)]
 pub struct CoriolisMatrix;
+#[doc(hidden)]
 impl Quantity for CoriolisMatrix {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -122,6 +123,7 @@ impl Quantity for CoriolisMatrix {
         &[output("C", MATRIX, "N m s or N s")],
     );
 }
+#[doc(hidden)]
 impl Kernel for CoriolisMatrix {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -141,6 +143,7 @@ impl Kernel for CoriolisMatrix {
 /// See [`mass_matrix_rate`].
 #[derive(Clone, Copy, Debug)]
 pub struct MassMatrixRate;
+#[doc(hidden)]
 impl Quantity for MassMatrixRate {
     type Kernel = CoriolisMatrix;
     const DECLARATION: Declaration = Declaration::new(

@@ -69,6 +69,7 @@ pub fn potential_energy<S: Scalar + From<C>, C: Scalar>(
 /// See [`kinetic_energy`].
 #[derive(Clone, Copy, Debug)]
 pub struct KineticEnergy;
+#[doc(hidden)]
 impl Quantity for KineticEnergy {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -80,6 +81,7 @@ impl Quantity for KineticEnergy {
     .uses(Uses::BASE_TWIST)
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for KineticEnergy {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -91,6 +93,7 @@ impl Kernel for KineticEnergy {
 /// See [`potential_energy`].
 #[derive(Clone, Copy, Debug)]
 pub struct PotentialEnergy;
+#[doc(hidden)]
 impl Quantity for PotentialEnergy {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -102,6 +105,7 @@ impl Quantity for PotentialEnergy {
     .uses(Uses::GRAVITY)
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for PotentialEnergy {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

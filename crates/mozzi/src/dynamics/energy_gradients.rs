@@ -64,6 +64,7 @@ pub fn energy_gradients<S: Scalar + From<C>, C: Scalar>(
 /// See [`energy_gradients`].
 #[derive(Clone, Copy, Debug)]
 pub struct EnergyGradients;
+#[doc(hidden)]
 impl Quantity for EnergyGradients {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -79,6 +80,7 @@ impl Quantity for EnergyGradients {
     .uses(Uses::GRAVITY.and(Uses::BASE_TWIST))
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for EnergyGradients {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

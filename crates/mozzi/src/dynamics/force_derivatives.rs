@@ -90,12 +90,14 @@ fn at_rest<S: Scalar + From<C>, C: Scalar>(
 /// See [`gravity_forces_derivative`].
 #[derive(Clone, Copy, Debug)]
 pub struct GravityForcesDerivative;
+#[doc(hidden)]
 impl Quantity for GravityForcesDerivative {
     type Kernel = Self;
     const DECLARATION: Declaration =
         Declaration::new("gravity_forces_derivative", "∂g/∂θ", &[THETA], &[output("dg", MATRIX, D_FORCE)])
             .uses(Uses::GRAVITY);
 }
+#[doc(hidden)]
 impl Kernel for GravityForcesDerivative {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -107,6 +109,7 @@ impl Kernel for GravityForcesDerivative {
 /// See [`tip_forces_derivative`].
 #[derive(Clone, Copy, Debug)]
 pub struct TipForcesDerivative;
+#[doc(hidden)]
 impl Quantity for TipForcesDerivative {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -117,6 +120,7 @@ impl Quantity for TipForcesDerivative {
     )
     .uses(Uses::WRENCHES);
 }
+#[doc(hidden)]
 impl Kernel for TipForcesDerivative {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -128,6 +132,7 @@ impl Kernel for TipForcesDerivative {
 /// See [`mass_matrix_product_derivative`].
 #[derive(Clone, Copy, Debug)]
 pub struct MassMatrixProductDerivative;
+#[doc(hidden)]
 impl Quantity for MassMatrixProductDerivative {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -137,6 +142,7 @@ impl Quantity for MassMatrixProductDerivative {
         &[output("dMx", MATRIX, "that of M x, each per unit of its column")],
     );
 }
+#[doc(hidden)]
 impl Kernel for MassMatrixProductDerivative {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

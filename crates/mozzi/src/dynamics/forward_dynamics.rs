@@ -163,6 +163,7 @@ fn accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &m
 /// See [`forward_dynamics`].
 #[derive(Clone, Copy, Debug)]
 pub struct ForwardDynamics;
+#[doc(hidden)]
 impl Quantity for ForwardDynamics {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -174,6 +175,7 @@ impl Quantity for ForwardDynamics {
     .uses(Uses::ALL)
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ForwardDynamics {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

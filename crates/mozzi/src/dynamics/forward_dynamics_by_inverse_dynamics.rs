@@ -49,6 +49,7 @@ pub(crate) fn forward_dynamics_by_inverse_dynamics<S: Scalar + From<C>, C: Scala
 /// See [`Model::forward_dynamics_by_inverse_dynamics`].
 #[derive(Clone, Copy, Debug)]
 pub struct ForwardDynamicsByInverseDynamics;
+#[doc(hidden)]
 impl Quantity for ForwardDynamicsByInverseDynamics {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -60,6 +61,7 @@ impl Quantity for ForwardDynamicsByInverseDynamics {
     .uses(Uses::ALL)
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ForwardDynamicsByInverseDynamics {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -83,6 +83,7 @@ pub fn forward_dynamics_derivatives<S: Scalar + From<C>, C: Scalar>(
 /// See [`forward_dynamics_derivatives`].
 #[derive(Clone, Copy, Debug)]
 pub struct ForwardDynamicsDerivatives;
+#[doc(hidden)]
 impl Quantity for ForwardDynamicsDerivatives {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -99,6 +100,7 @@ impl Quantity for ForwardDynamicsDerivatives {
     .uses(Uses::ALL)
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ForwardDynamicsDerivatives {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -124,6 +124,7 @@ fn solve<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &mut Works
 /// See [`forward_dynamics_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct ForwardDynamicsVjp;
+#[doc(hidden)]
 impl Quantity for ForwardDynamicsVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -135,6 +136,7 @@ impl Quantity for ForwardDynamicsVjp {
     .uses(Uses::ALL)
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ForwardDynamicsVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

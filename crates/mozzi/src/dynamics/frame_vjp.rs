@@ -96,6 +96,7 @@ fn of_frame<S: Scalar + From<C>, C: Scalar>(
 /// See [`frame_twist_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct FrameTwistVjp;
+#[doc(hidden)]
 impl Quantity for FrameTwistVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -106,6 +107,7 @@ impl Quantity for FrameTwistVjp {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for FrameTwistVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -119,6 +121,7 @@ impl Kernel for FrameTwistVjp {
 /// See [`frame_acceleration_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct FrameAccelerationVjp;
+#[doc(hidden)]
 impl Quantity for FrameAccelerationVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -129,6 +132,7 @@ impl Quantity for FrameAccelerationVjp {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for FrameAccelerationVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -121,6 +121,7 @@ fn motions<const ONE_AXIS: bool, S: Scalar + From<C>, C: Scalar>(
 /// See [`inverse_dynamics`].
 #[derive(Clone, Copy, Debug)]
 pub struct InverseDynamics;
+#[doc(hidden)]
 impl Quantity for InverseDynamics {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -131,6 +132,7 @@ impl Quantity for InverseDynamics {
     )
     .uses(Uses::ALL);
 }
+#[doc(hidden)]
 impl Kernel for InverseDynamics {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -125,6 +125,7 @@ pub(super) fn fill_derivatives<const K: usize, S: Scalar + From<C>, C: Scalar>(
 /// See [`inverse_dynamics_derivatives`].
 #[derive(Clone, Copy, Debug)]
 pub struct InverseDynamicsDerivatives;
+#[doc(hidden)]
 impl Quantity for InverseDynamicsDerivatives {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -139,6 +140,7 @@ impl Quantity for InverseDynamicsDerivatives {
     )
     .uses(Uses::ALL);
 }
+#[doc(hidden)]
 impl Kernel for InverseDynamicsDerivatives {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

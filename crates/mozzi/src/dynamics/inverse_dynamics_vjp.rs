@@ -70,6 +70,7 @@ pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
 /// See [`inverse_dynamics_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct InverseDynamicsVjp;
+#[doc(hidden)]
 impl Quantity for InverseDynamicsVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -80,6 +81,7 @@ impl Quantity for InverseDynamicsVjp {
     )
     .uses(Uses::ALL);
 }
+#[doc(hidden)]
 impl Kernel for InverseDynamicsVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

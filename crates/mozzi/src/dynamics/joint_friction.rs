@@ -17,6 +17,7 @@ pub fn joint_friction<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, j: usize
 /// See [`joint_friction`].
 #[derive(Clone, Copy, Debug)]
 pub struct JointFriction;
+#[doc(hidden)]
 impl Quantity for JointFriction {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -26,6 +27,7 @@ impl Quantity for JointFriction {
         &[output("f", VECTOR, FORCE)],
     );
 }
+#[doc(hidden)]
 impl Kernel for JointFriction {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

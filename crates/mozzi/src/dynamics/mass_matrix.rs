@@ -64,6 +64,7 @@ pub(crate) fn fill_mass_matrix<S: Scalar + From<C>, C: Scalar>(
 /// See [`mass_matrix`].
 #[derive(Clone, Copy, Debug)]
 pub struct MassMatrix;
+#[doc(hidden)]
 impl Quantity for MassMatrix {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -73,6 +74,7 @@ impl Quantity for MassMatrix {
         &[symmetric("M", MATRIX, INERTIA)],
     );
 }
+#[doc(hidden)]
 impl Kernel for MassMatrix {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

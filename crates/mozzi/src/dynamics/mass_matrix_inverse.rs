@@ -32,6 +32,7 @@ pub fn mass_matrix_inverse<S: Scalar + From<C>, C: Scalar>(
 /// See [`mass_matrix_inverse`].
 #[derive(Clone, Copy, Debug)]
 pub struct MassMatrixInverse;
+#[doc(hidden)]
 impl Quantity for MassMatrixInverse {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -42,6 +43,7 @@ impl Quantity for MassMatrixInverse {
     )
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for MassMatrixInverse {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

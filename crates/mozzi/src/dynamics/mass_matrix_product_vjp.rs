@@ -48,6 +48,7 @@ pub fn mass_matrix_product_vjp<S: Scalar + From<C>, C: Scalar>(
 /// See [`mass_matrix_product_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct MassMatrixProductVjp;
+#[doc(hidden)]
 impl Quantity for MassMatrixProductVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -57,6 +58,7 @@ impl Quantity for MassMatrixProductVjp {
         &[output("d_theta", VECTOR, ANY), output("d_ddtheta", VECTOR, ANY)],
     );
 }
+#[doc(hidden)]
 impl Kernel for MassMatrixProductVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -47,6 +47,7 @@ pub fn forward_dynamics_by_mass_matrix<S: Scalar + From<C>, C: Scalar>(
 /// See [`forward_dynamics_by_mass_matrix`].
 #[derive(Clone, Copy, Debug)]
 pub struct ForwardDynamicsByMassMatrix;
+#[doc(hidden)]
 impl Quantity for ForwardDynamicsByMassMatrix {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -58,6 +59,7 @@ impl Quantity for ForwardDynamicsByMassMatrix {
     .uses(Uses::ALL)
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for ForwardDynamicsByMassMatrix {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -153,6 +153,7 @@ fn seen_from_space<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
 /// See [`momentum`].
 #[derive(Clone, Copy, Debug)]
 pub struct Momentum;
+#[doc(hidden)]
 impl Quantity for Momentum {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -164,6 +165,7 @@ impl Quantity for Momentum {
     .of(Of::Point)
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for Momentum {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -175,6 +177,7 @@ impl Kernel for Momentum {
 /// See [`momentum_rate`].
 #[derive(Clone, Copy, Debug)]
 pub struct MomentumRate;
+#[doc(hidden)]
 impl Quantity for MomentumRate {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -186,6 +189,7 @@ impl Quantity for MomentumRate {
     .of(Of::Point)
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for MomentumRate {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

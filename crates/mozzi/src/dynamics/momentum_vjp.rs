@@ -90,6 +90,7 @@ fn of_momentum<S: Scalar + From<C>, C: Scalar>(
 /// See [`momentum_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct MomentumVjp;
+#[doc(hidden)]
 impl Quantity for MomentumVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -101,6 +102,7 @@ impl Quantity for MomentumVjp {
     .of(Of::Point)
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for MomentumVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -114,6 +116,7 @@ impl Kernel for MomentumVjp {
 /// See [`momentum_rate_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct MomentumRateVjp;
+#[doc(hidden)]
 impl Quantity for MomentumRateVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -125,6 +128,7 @@ impl Quantity for MomentumRateVjp {
     .of(Of::Point)
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for MomentumRateVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -162,6 +162,7 @@ const OUTPUTS: &[Output] = &[
 /// See [`inverse_dynamics_parameter_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct InverseDynamicsParameterVjp;
+#[doc(hidden)]
 impl Quantity for InverseDynamicsParameterVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -173,6 +174,7 @@ impl Quantity for InverseDynamicsParameterVjp {
     .uses(Uses::ALL)
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for InverseDynamicsParameterVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -185,6 +187,7 @@ impl Kernel for InverseDynamicsParameterVjp {
 /// See [`forward_dynamics_parameter_vjp`].
 #[derive(Clone, Copy, Debug)]
 pub struct ForwardDynamicsParameterVjp;
+#[doc(hidden)]
 impl Quantity for ForwardDynamicsParameterVjp {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -197,6 +200,7 @@ impl Quantity for ForwardDynamicsParameterVjp {
     .divides()
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for ForwardDynamicsParameterVjp {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -172,6 +172,7 @@ pub fn energy_regressors<S: Scalar + From<C>, C: Scalar>(
 /// See [`regressor`].
 #[derive(Clone, Copy, Debug)]
 pub struct Regressor;
+#[doc(hidden)]
 impl Quantity for Regressor {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -182,6 +183,7 @@ impl Quantity for Regressor {
     )
     .uses(Uses::GRAVITY.and(Uses::BASE_TWIST).and(Uses::BASE_ACCELERATION));
 }
+#[doc(hidden)]
 impl Kernel for Regressor {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -193,6 +195,7 @@ impl Kernel for Regressor {
 /// See [`energy_regressors`].
 #[derive(Clone, Copy, Debug)]
 pub struct EnergyRegressors;
+#[doc(hidden)]
 impl Quantity for EnergyRegressors {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -207,6 +210,7 @@ impl Quantity for EnergyRegressors {
     .uses(Uses::GRAVITY.and(Uses::BASE_TWIST))
     .is_of_masses();
 }
+#[doc(hidden)]
 impl Kernel for EnergyRegressors {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

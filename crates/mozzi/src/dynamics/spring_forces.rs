@@ -39,6 +39,7 @@ pub(super) fn add_stiffness<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, th
 /// See [`spring_forces`].
 #[derive(Clone, Copy, Debug)]
 pub struct SpringForces;
+#[doc(hidden)]
 impl Quantity for SpringForces {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -48,6 +49,7 @@ impl Quantity for SpringForces {
         &[output("f", VECTOR, FORCE)],
     );
 }
+#[doc(hidden)]
 impl Kernel for SpringForces {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

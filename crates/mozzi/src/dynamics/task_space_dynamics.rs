@@ -83,6 +83,7 @@ fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
 /// See [`task_space_dynamics`].
 #[derive(Clone, Copy, Debug)]
 pub struct TaskSpaceDynamics;
+#[doc(hidden)]
 impl Quantity for TaskSpaceDynamics {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -95,6 +96,7 @@ impl Quantity for TaskSpaceDynamics {
     .uses(Uses::ALL)
     .divides();
 }
+#[doc(hidden)]
 impl Kernel for TaskSpaceDynamics {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

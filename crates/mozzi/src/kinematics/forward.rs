@@ -50,6 +50,7 @@ pub fn frame_poses<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S]
 /// See [`forward_kinematics`].
 #[derive(Clone, Copy, Debug)]
 pub struct ForwardKinematics;
+#[doc(hidden)]
 impl Quantity for ForwardKinematics {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -60,6 +61,7 @@ impl Quantity for ForwardKinematics {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for ForwardKinematics {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -71,6 +73,7 @@ impl Kernel for ForwardKinematics {
 /// See [`frame_poses`].
 #[derive(Clone, Copy, Debug)]
 pub struct FramePoses;
+#[doc(hidden)]
 impl Quantity for FramePoses {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -80,6 +83,7 @@ impl Quantity for FramePoses {
         &[output("T", &[Dim::Frames, Dim::Is(4), Dim::Is(4)], "m")],
     );
 }
+#[doc(hidden)]
 impl Kernel for FramePoses {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -46,6 +46,7 @@ pub fn frame_acceleration<S: Scalar + From<C>, C: Scalar>(
 /// See [`frame_acceleration`].
 #[derive(Clone, Copy, Debug)]
 pub struct FrameAcceleration;
+#[doc(hidden)]
 impl Quantity for FrameAcceleration {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -56,6 +57,7 @@ impl Quantity for FrameAcceleration {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for FrameAcceleration {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -115,6 +115,7 @@ pub(crate) fn body_columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, the
 /// See [`space_jacobian`].
 #[derive(Clone, Copy, Debug)]
 pub struct SpaceJacobian;
+#[doc(hidden)]
 impl Quantity for SpaceJacobian {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -125,6 +126,7 @@ impl Quantity for SpaceJacobian {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for SpaceJacobian {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -138,6 +140,7 @@ impl Kernel for SpaceJacobian {
 /// See [`body_jacobian`].
 #[derive(Clone, Copy, Debug)]
 pub struct BodyJacobian;
+#[doc(hidden)]
 impl Quantity for BodyJacobian {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -148,6 +151,7 @@ impl Quantity for BodyJacobian {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for BodyJacobian {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

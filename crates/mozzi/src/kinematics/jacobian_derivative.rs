@@ -105,6 +105,7 @@ fn brackets<S: Scalar + From<C>, C: Scalar>(
 /// See [`space_jacobian_derivative`].
 #[derive(Clone, Copy, Debug)]
 pub struct SpaceJacobianDerivative;
+#[doc(hidden)]
 impl Quantity for SpaceJacobianDerivative {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -115,6 +116,7 @@ impl Quantity for SpaceJacobianDerivative {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for SpaceJacobianDerivative {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -128,6 +130,7 @@ impl Kernel for SpaceJacobianDerivative {
 /// See [`body_jacobian_derivative`].
 #[derive(Clone, Copy, Debug)]
 pub struct BodyJacobianDerivative;
+#[doc(hidden)]
 impl Quantity for BodyJacobianDerivative {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -138,6 +141,7 @@ impl Quantity for BodyJacobianDerivative {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for BodyJacobianDerivative {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

@@ -98,6 +98,7 @@ pub fn space_jacobian_rate<S: Scalar + From<C>, C: Scalar>(
 /// See [`space_jacobian_rate`].
 #[derive(Clone, Copy, Debug)]
 pub struct SpaceJacobianRate;
+#[doc(hidden)]
 impl Quantity for SpaceJacobianRate {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -108,6 +109,7 @@ impl Quantity for SpaceJacobianRate {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for SpaceJacobianRate {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
@@ -121,6 +123,7 @@ impl Kernel for SpaceJacobianRate {
 /// See [`body_jacobian_rate`].
 #[derive(Clone, Copy, Debug)]
 pub struct BodyJacobianRate;
+#[doc(hidden)]
 impl Quantity for BodyJacobianRate {
     type Kernel = Self;
     const DECLARATION: Declaration = Declaration::new(
@@ -131,6 +134,7 @@ impl Quantity for BodyJacobianRate {
     )
     .of(Of::Frame);
 }
+#[doc(hidden)]
 impl Kernel for BodyJacobianRate {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {

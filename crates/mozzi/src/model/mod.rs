@@ -48,7 +48,7 @@ pub use error::Error;
 pub use frame::{Frame, FrameId};
 pub(crate) use link::{Lifted, Link, Motion};
 pub(crate) use parameters::JOINT_PARAMETERS;
-pub use pivots::{Pivots, clearance, least_is_clear};
+pub use pivots::{Pivots, least_is_clear};
 pub use places::{Freedom, Place};
 pub use provenance::FoldedBody;
 pub(crate) use rotor::Rotor;

@@ -1,7 +1,7 @@
 //! The pivots of a factorization of the mass matrix, and the rule that judges whether it is singular.
 
 use super::{Error, Model};
-use crate::scalar::{Float, Scalar};
+use crate::scalar::Float;
 use alloc::string::ToString;
 use alloc::vec::Vec;
 
@@ -68,12 +68,5 @@ impl Pivots<'_> {
 /// The quick test from the smallest pivot and the sum of all: least > √ε/4 · sum. False for NaN and infinity.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn least_is_clear<T: Float>(least: T, sum: T) -> bool {
-    clearance(least, sum, T::EPSILON) > T::zero()
-}
-
-/// least − √ε/4 · sum, positive if the pivots pass the quick test, for each state of a register. ε is that of the
-/// number type.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub fn clearance<S: Scalar + From<T>, T: Float>(least: S, sum: S, epsilon: T) -> S {
-    least - S::from(epsilon.sqrt() * T::from_f64(0.25)) * sum
+    least - T::EPSILON.sqrt() * T::from_f64(0.25) * sum > T::zero()
 }

@@ -9,6 +9,7 @@ use alloc::vec::Vec;
 /// A function of a robot and its state: its name, kernel, inputs and outputs.
 pub trait Quantity: Copy + Send + Sync + 'static {
     /// The kernel that computes it.
+    #[doc(hidden)]
     type Kernel: Kernel;
     /// Everything else.
     const DECLARATION: Declaration;
@@ -16,6 +17,7 @@ pub trait Quantity: Copy + Send + Sync + 'static {
 
 /// Code that computes one or several quantities on any number type. It is inlined into entry points compiled for an
 /// instruction set.
+#[doc(hidden)]
 pub trait Kernel: 'static {
     /// Fills the outputs.
     fn run<S: Scalar + From<C>, C: Scalar>(call: Call<S, C>);
@@ -27,6 +29,7 @@ pub const MOST_INPUTS: usize = 4;
 pub const MOST_OUTPUTS: usize = 4;
 
 /// The arguments of a kernel.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct Call<'a, S, C> {
     /// The frame, task or point.

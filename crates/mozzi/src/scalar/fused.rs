@@ -6,6 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An `f64` with fused multiply-add, for entries compiled with `#[target_feature(enable = "fma")]` alone (see
 /// [`fast`](crate::fast)): elsewhere each `mul_add` is a slow library call.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);

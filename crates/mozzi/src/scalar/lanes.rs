@@ -3,6 +3,7 @@
 use super::{Fused, Scalar};
 
 /// L numbers, at most four.
+#[doc(hidden)]
 pub trait Lanes<S, const L: usize>: Copy {
     /// Six rows of numbers.
     ///

@@ -27,6 +27,7 @@ pub trait Float: super::Real + Send + Sync + 'static {
 
 /// Operations that [`sin_cos`] needs beyond arithmetic, on a number or a register of numbers: constants and bit
 /// operations.
+#[doc(hidden)]
 pub trait Bits: Scalar {
     /// The type of the numbers in a register.
     type Number: Float;

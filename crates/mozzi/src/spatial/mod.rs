@@ -13,7 +13,7 @@ pub mod solids;
 mod wrenches;
 
 pub use crate::lie::{Twist, Wrench};
-pub use articulated_inertia::ArticulatedInertia;
+pub(crate) use articulated_inertia::ArticulatedInertia;
 pub(crate) use axis_rate::AxisRate;
 pub(crate) use coriolis_factor::{CoriolisFactor, coriolis_moment};
 pub use inertia::{InertiaVerdict, Rounded, SpatialInertia};
