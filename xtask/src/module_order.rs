@@ -1,7 +1,7 @@
 //! The order of mozzi's modules: none uses one above it.
 
 /// From the ground up. `quantities` has the list of all quantities, which names kernels: its `mod.rs` is exempt.
-const ORDER: [&str; 13] = [
+const ORDER: [&str; 12] = [
     "scalar",
     "linalg",
     "lie",
@@ -13,7 +13,6 @@ const ORDER: [&str; 13] = [
     "dynamics",
     "constraints",
     "fast",
-    "api",
     "conventions",
 ];
 const EXEMPT: &str = "crates/mozzi/src/quantities/mod.rs";

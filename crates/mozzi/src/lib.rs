@@ -36,7 +36,6 @@
 extern crate alloc;
 
 pub mod accuracy;
-mod api;
 pub mod constraints;
 pub mod conventions;
 pub mod dynamics;
@@ -54,11 +53,8 @@ pub mod spelling;
 pub mod testing;
 mod workspace;
 
-pub use api::{
-    BodyFrame, ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, EnergyGradients,
-    ForwardDynamicsDerivatives, ForwardDynamicsVjp, InverseDynamicsDerivatives, InverseDynamicsVjp, NewtonEuler,
-    ParameterVjp, Reduction, TaskSpaceDynamics,
-};
+pub use constraints::{ConstrainedDynamics, ConstrainedForwardDynamicsDerivatives, ConstraintRank, Reduction};
+pub use dynamics::results::*;
 pub use dynamics::{BaseParameters, ClosedForm, Entry};
 pub use kinematics::Jacobian;
 pub use lie::{SE3, SO3};

@@ -10,18 +10,31 @@
 //! [`Model::with_constraints`](crate::Model::with_constraints). They may be redundant: λ is then the one of least norm
 //! in the limit, and Aᵀλ and θ̈ are unique.
 
+mod assembly;
 pub mod delassus;
+mod derivatives;
+mod dynamics;
 pub(crate) mod forward_dynamics;
 pub(crate) mod impulse;
+pub(crate) mod inverse_dynamics;
 pub(crate) mod jacobian;
+#[cfg(test)]
+mod model_tests;
 pub(crate) mod projection;
+mod rank;
+mod reduction;
 mod relative_motion;
+mod rows;
 #[cfg(test)]
 mod tests;
 
+pub use derivatives::ConstrainedForwardDynamicsDerivatives;
+pub use dynamics::ConstrainedDynamics;
 pub use forward_dynamics::constrained_forward_dynamics;
 pub use impulse::change;
 pub use impulse::constraint_impulse;
 pub use jacobian::constraint_jacobian;
 pub(crate) use jacobian::wrench_of;
 pub use projection::constraint_projection;
+pub use rank::ConstraintRank;
+pub use reduction::Reduction;

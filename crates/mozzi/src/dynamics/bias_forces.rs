@@ -2,12 +2,14 @@
 
 use super::inverse_dynamics::newton_euler;
 use crate::linalg::Vec3;
+use crate::model::Error;
 use crate::model::{Environment, FrameId, Model};
 use crate::quantities::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use crate::workspace::Workspace;
 use alloc::vec::Vec;
+use nalgebra::DVector;
 
 /// h(θ, θ̇) = c + g: the joint forces at θ̈ = 0, without friction and springs. Wrenches in `environment.applied` and a
 /// moving base are included, if given.
@@ -173,4 +175,38 @@ impl Quantity for TipForces {
     )
     .uses(Uses::WRENCHES)
     .at_rest();
+}
+
+impl Model<f64> {
+    /// h = c + g (+ JᵀF + the base's terms, if given): see [`bias_forces`](bias_forces()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn bias_forces(&self, theta: &[f64], dtheta: &[f64], environment: &Environment) -> Result<DVector<f64>, Error> {
+        self.vector(BiasForces, &[theta, dtheta], environment)
+    }
+
+    /// c(θ, θ̇): see [`velocity_product`](velocity_product()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn velocity_product(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.vector(VelocityProduct, &[theta, dtheta], &self.environment())
+    }
+
+    /// g(θ) under the model's gravity: see [`gravity_forces`](gravity_forces()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn gravity_forces(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.vector(GravityForces, &[theta], &self.environment())
+    }
+
+    /// JᵀF for wrenches that frames apply to the environment: see [`tip_forces`](tip_forces()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn tip_forces(&self, theta: &[f64], applied: &[(FrameId, Wrench)]) -> Result<DVector<f64>, Error> {
+        self.vector(TipForces, &[theta], &Environment { applied, ..self.environment() })
+    }
 }

@@ -4,11 +4,13 @@ use super::momentum::{composite_inertia, momentum, momentum_matrix, momentum_rat
 use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::linalg::Vec3;
+use crate::model::Error;
 use crate::model::Model;
 use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, THREE, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use crate::workspace::Workspace;
+use nalgebra::DMatrix;
 
 /// The centre of mass of the moving links and a floating base, in {s}, m. NaN if they have no mass.
 ///
@@ -150,5 +152,39 @@ impl Kernel for CenterOfMassJacobian {
                 J[row * n + j] = entry;
             }
         }
+    }
+}
+
+impl Model<f64> {
+    /// The centre of mass of the moving links and a floating base, in {s}.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::NoMass`] if the moving links have no mass.
+    pub fn center_of_mass(&self, theta: &[f64]) -> Result<Vec3, Error> {
+        self.point(CenterOfMass, &[theta])
+    }
+
+    /// ċ of the centre of mass, {s} coordinates.
+    ///
+    /// # Errors
+    /// As [`center_of_mass`](Self::center_of_mass).
+    pub fn center_of_mass_velocity(&self, theta: &[f64], dtheta: &[f64]) -> Result<Vec3, Error> {
+        self.point(CenterOfMassVelocity, &[theta, dtheta])
+    }
+
+    /// c̈ of the centre of mass, {s} coordinates.
+    ///
+    /// # Errors
+    /// As [`center_of_mass`](Self::center_of_mass).
+    pub fn center_of_mass_acceleration(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64]) -> Result<Vec3, Error> {
+        self.point(CenterOfMassAcceleration, &[theta, dtheta, ddtheta])
+    }
+
+    /// The 3 × n Jacobian of the centre of mass: ċ = Jθ̇ in {s} coordinates.
+    ///
+    /// # Errors
+    /// As [`center_of_mass`](Self::center_of_mass).
+    pub fn center_of_mass_jacobian(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(CenterOfMassJacobian, &[theta], &self.environment())
     }
 }

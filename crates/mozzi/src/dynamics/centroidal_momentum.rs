@@ -2,11 +2,15 @@
 
 use super::center_of_mass::centroidal_frame;
 use super::momentum::{columns, rate_in_base};
+use crate::model::Error;
+use crate::model::Model;
 use crate::quantities::{
     Call, DTHETA, Declaration, JACOBIAN, Kernel, Memory, Quantity, SIX, THETA, by_rows, output, sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
+use nalgebra::DMatrix;
+use nalgebra::DVector;
 
 /// See [`momentum_matrix`](super::momentum_matrix).
 #[derive(Clone, Copy, Debug)]
@@ -57,5 +61,25 @@ impl Kernel for CentroidalMomentumBias {
         let T_bg = centroidal_frame(c.model, theta, w);
         let rate = rate_in_base(c.model, theta, dtheta, zero, w);
         b.copy_from_slice(&(T_bg.Ad().transpose() * rate).to_array());
+    }
+}
+
+impl Model<f64> {
+    /// The 6 × n centroidal momentum matrix A_G, angular rows first: `h_G` = A_G θ̇ is the momentum about the centre of
+    /// mass, in {s} axes.
+    ///
+    /// # Errors
+    /// As [`center_of_mass`](Self::center_of_mass).
+    pub fn centroidal_momentum_matrix(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(CentroidalMomentumMatrix, &[theta], &self.environment())
+    }
+
+    /// Ȧ_G θ̇, the bias term of ḣ_G = A_G θ̈ + Ȧ_G θ̇: see
+    /// [`centroidal_momentum_matrix`](Self::centroidal_momentum_matrix).
+    ///
+    /// # Errors
+    /// As [`center_of_mass`](Self::center_of_mass).
+    pub fn centroidal_momentum_bias(&self, theta: &[f64], dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.vector(CentroidalMomentumBias, &[theta, dtheta], &self.environment())
     }
 }

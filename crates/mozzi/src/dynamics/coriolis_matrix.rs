@@ -6,11 +6,13 @@ use super::composite_bodies::add_up_bodies;
 use super::several_axes::add_moved_by_link;
 use crate::kinematics::{base_twist, joint_transforms};
 use crate::linalg::{Square, Vec3, add_transpose};
+use crate::model::Error;
 use crate::model::Model;
 use crate::quantities::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output, symmetric};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{AxisRate, CoriolisFactor, Twist, Wrench, Wrenches};
 use crate::workspace::{ByRates, Composite, Recursion, Workspace};
+use nalgebra::DMatrix;
 
 /// C(θ, θ̇) of the Christoffel symbols, n × n, row-major into `C`: Cθ̇ = c and Ṁ − 2C skew-symmetric; base at rest.
 ///
@@ -153,4 +155,22 @@ impl Quantity for MassMatrixRate {
         &[symmetric("dM", MATRIX, "kg m²/s, kg m/s or kg/s")],
     )
     .with_first_output(1);
+}
+
+impl Model<f64> {
+    /// Ṁ(θ, θ̇): see [`mass_matrix_rate`](mass_matrix_rate()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn mass_matrix_rate(&self, theta: &[f64], dtheta: &[f64]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(MassMatrixRate, &[theta, dtheta], &self.environment())
+    }
+
+    /// C(θ, θ̇) of the Christoffel symbols: see [`coriolis_matrix`](coriolis_matrix()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn coriolis_matrix(&self, theta: &[f64], dtheta: &[f64]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(CoriolisMatrix, &[theta, dtheta], &self.environment())
+    }
 }

@@ -3,6 +3,7 @@
 use super::armature::rotor_energy;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::linalg::Vec3;
+use crate::model::Error;
 use crate::model::Model;
 use crate::quantities::{Call, DTHETA, Declaration, Kernel, NUMBER, Quantity, THETA, Uses, output};
 use crate::scalar::{Scalar, pass};
@@ -111,5 +112,23 @@ impl Kernel for PotentialEnergy {
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [energy, ..]) = (c.inputs, c.outputs);
         energy[0] = potential_energy(c.model, theta, c.environment.gravity, &mut c.memory.workspace);
+    }
+}
+
+impl Model<f64> {
+    /// ½ θ̇ᵀMθ̇, base at rest: see [`kinetic_energy`](kinetic_energy()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn kinetic_energy(&self, theta: &[f64], dtheta: &[f64]) -> Result<f64, Error> {
+        Ok(self.first(KineticEnergy, &[theta, dtheta], &self.environment())?[0])
+    }
+
+    /// −Σ m gᵀp under the model's gravity: see [`potential_energy`](potential_energy()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn potential_energy(&self, theta: &[f64]) -> Result<f64, Error> {
+        Ok(self.first(PotentialEnergy, &[theta], &self.environment())?[0])
     }
 }

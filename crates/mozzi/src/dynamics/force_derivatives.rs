@@ -7,11 +7,13 @@ use super::derivatives::outward_pass;
 use super::inverse_dynamics_derivatives::fill_derivatives;
 use crate::kinematics::joint_transforms;
 use crate::linalg::{Square, Vec3};
+use crate::model::Error;
 use crate::model::{Environment, FrameId, Model};
 use crate::quantities::{CONSTANT_VECTOR, Call, D_FORCE, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Wrench;
 use crate::workspace::Workspace;
+use nalgebra::DMatrix;
 
 /// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric if the base is fixed, since g is a gradient. For a
 /// floating base the derivative is along its body twist, as in
@@ -148,5 +150,33 @@ impl Kernel for MassMatrixProductDerivative {
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, x, ..], [dMx, ..]) = (c.inputs, c.outputs);
         mass_matrix_product_derivative(c.model, theta, x, &mut c.memory.workspace, dMx);
+    }
+}
+
+impl Model<f64> {
+    /// ∂g/∂θ under the model's gravity: see [`gravity_forces_derivative`](gravity_forces_derivative()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn gravity_forces_derivative(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(GravityForcesDerivative, &[theta], &self.environment())
+    }
+
+    /// ∂(JᵀF)/∂θ for wrenches that frames apply to the environment: see
+    /// [`tip_forces_derivative`](tip_forces_derivative()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn tip_forces_derivative(&self, theta: &[f64], applied: &[(FrameId, Wrench)]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(TipForcesDerivative, &[theta], &Environment { applied, ..self.environment() })
+    }
+
+    /// ∂(M(θ)x)/∂θ for a constant x: see
+    /// [`mass_matrix_product_derivative`](mass_matrix_product_derivative()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn mass_matrix_product_derivative(&self, theta: &[f64], x: &[f64]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(MassMatrixProductDerivative, &[theta, x], &self.environment())
     }
 }

@@ -9,11 +9,13 @@ use super::siblings;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::linalg::ldlt;
+use crate::model::Error;
 use crate::model::{Environment, Model};
 use crate::quantities::{ACCELERATION, Call, DTHETA, Declaration, Kernel, Quantity, TAU, THETA, Uses, VECTOR, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
 use crate::workspace::{Articulated, Recursion, Workspace};
+use nalgebra::DVector;
 
 /// The joint accelerations θ̈ that the joint forces and torques τ produce:
 ///
@@ -181,5 +183,23 @@ impl Kernel for ForwardDynamics {
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, tau, ..], [ddtheta, ..]) = (c.inputs, c.outputs);
         forward_dynamics(c.model, theta, dtheta, tau, c.environment, &mut c.memory.workspace, ddtheta);
+    }
+}
+
+impl Model<f64> {
+    /// θ̈ from τ: by articulated bodies, or by the mass matrix (see
+    /// [`solves_by_mass_matrix`](Self::solves_by_mass_matrix)). See
+    /// [`forward_dynamics`](forward_dynamics()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
+    pub fn forward_dynamics(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        environment: &Environment,
+    ) -> Result<DVector<f64>, Error> {
+        self.vector(ForwardDynamics, &[theta, dtheta, tau], environment)
     }
 }

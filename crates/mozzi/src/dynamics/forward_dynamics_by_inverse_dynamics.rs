@@ -3,12 +3,14 @@
 use super::armature::set_armature;
 use super::inverse_dynamics::{inverse_dynamics, newton_euler};
 use crate::linalg::{Vec3, ldlt};
+use crate::model::Error;
 use crate::model::{Environment, Model};
 use crate::quantities::{
     ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;
 use crate::workspace::Workspace;
+use nalgebra::DVector;
 
 /// θ̈ from τ: h + f by one call of inverse dynamics, M by n calls with θ̈ = e_i and without springs, and a dense LDLᵀ.
 /// `M` is memory for n × n numbers, `e` for n, and `zeros` holds n of them; `dense` is the pattern of a full matrix.
@@ -82,5 +84,22 @@ impl Kernel for ForwardDynamicsByInverseDynamics {
             dense,
             ddtheta,
         );
+    }
+}
+
+impl Model<f64> {
+    /// θ̈ from τ by the book's method (Modern Robotics, section 8.5): h by one call of inverse dynamics, M by n calls
+    /// with θ̈ = e_i, and a dense LDLᵀ. O(n³): for teaching and comparison.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
+    pub fn forward_dynamics_by_inverse_dynamics(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        environment: &Environment,
+    ) -> Result<DVector<f64>, Error> {
+        self.vector(ForwardDynamicsByInverseDynamics, &[theta, dtheta, tau], environment)
     }
 }

@@ -10,7 +10,10 @@
 use super::bias_forces::take_zeros;
 use super::vjp::{add_products_of, from_rest};
 use crate::kinematics::joint_transforms;
+use crate::model::Error;
 use crate::model::{FrameId, Model};
+use crate::quantities::Query;
+use crate::quantities::vectors;
 use crate::quantities::{
     ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
     sized,
@@ -18,6 +21,7 @@ use crate::quantities::{
 use crate::scalar::Scalar;
 use crate::spatial::{Twist, Wrench};
 use crate::workspace::Workspace;
+use nalgebra::DVector;
 
 /// The gradient of wᵀ𝒱_b, 𝒱_b = `J_b`(θ)θ̇ the twist of a frame in its own coordinates with {s} at rest, for a constant
 /// w: `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, each n long; along velocities. `unused` is n numbers of memory. That of the frame's pose,
@@ -139,5 +143,39 @@ impl Kernel for FrameAccelerationVjp {
         let ([theta, dtheta, ddtheta, w], [a, b, d, _]) = (c.inputs, c.outputs);
         let (w, workspace) = (Wrench::from_array(six(w)), &mut c.memory.workspace);
         frame_acceleration_vjp(c.model, theta, dtheta, ddtheta, c.of.frame(), w, workspace, [a, b, d]);
+    }
+}
+
+impl Model<f64> {
+    /// `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, the gradient of wᵀ𝒱_b: see [`frame_twist_vjp`](frame_twist_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn frame_twist_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        frame: FrameId,
+        w: Wrench,
+    ) -> Result<[DVector<f64>; 2], Error> {
+        let query = Query::from(FrameTwistVjp).of(frame);
+        self.compute(query, &[theta, dtheta, &w.to_array()], &self.environment()).map(vectors)
+    }
+
+    /// `[wᵀ∂a_b/∂θ, wᵀ∂a_b/∂θ̇, J_bᵀw]`, the gradient of wᵀa_b: see
+    /// [`frame_acceleration_vjp`](frame_acceleration_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn frame_acceleration_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &[f64],
+        frame: FrameId,
+        w: Wrench,
+    ) -> Result<[DVector<f64>; 3], Error> {
+        let query = Query::from(FrameAccelerationVjp).of(frame);
+        self.compute(query, &[theta, dtheta, ddtheta, &w.to_array()], &self.environment()).map(vectors)
     }
 }

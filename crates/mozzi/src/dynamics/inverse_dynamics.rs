@@ -5,11 +5,13 @@ use super::joint_friction::joint_friction;
 use super::several_axes::carrier_twist;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
+use crate::model::Error;
 use crate::model::{Environment, Model};
 use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Wrench;
 use crate::workspace::{Recursion, Workspace};
+use nalgebra::DVector;
 
 /// The joint forces and torques τ that produce the motion (θ, θ̇, θ̈):
 ///
@@ -138,5 +140,21 @@ impl Kernel for InverseDynamics {
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ddtheta, ..], [tau, ..]) = (c.inputs, c.outputs);
         inverse_dynamics(c.model, theta, dtheta, ddtheta, c.environment, &mut c.memory.workspace, tau);
+    }
+}
+
+impl Model<f64> {
+    /// τ = M(θ)θ̈ + c + g + JᵀF + f(θ, θ̇): see [`inverse_dynamics`](inverse_dynamics()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn inverse_dynamics(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &[f64],
+        environment: &Environment,
+    ) -> Result<DVector<f64>, Error> {
+        self.vector(InverseDynamics, &[theta, dtheta, ddtheta], environment)
     }
 }

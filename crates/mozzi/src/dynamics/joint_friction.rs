@@ -1,8 +1,10 @@
 //! Friction in the joints.
 
+use crate::model::Error;
 use crate::model::Model;
 use crate::quantities::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, VECTOR, output};
 use crate::scalar::Scalar;
+use nalgebra::DVector;
 
 /// f(θ̇) = d θ̇ + μ sgn θ̇ of joint j at its rate, with sgn 0 = 0. Sticking is not modelled: at rest Coulomb friction
 /// is 0. N m or N.
@@ -35,5 +37,15 @@ impl Kernel for JointFriction {
         for (j, f) in f.iter_mut().enumerate() {
             *f = joint_friction(c.model, j, dtheta[j]);
         }
+    }
+}
+
+impl Model<f64> {
+    /// f(θ̇) = d θ̇ + μ sgn θ̇ of each joint, with sgn 0 = 0.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn joint_friction(&self, dtheta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.vector(JointFriction, &[dtheta], &self.environment())
     }
 }

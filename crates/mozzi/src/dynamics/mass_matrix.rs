@@ -4,11 +4,13 @@ use super::armature::set_armature;
 use super::composite_bodies::composite_inertias;
 use crate::kinematics::joint_transforms;
 use crate::linalg::Square;
+use crate::model::Error;
 use crate::model::Model;
 use crate::quantities::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, symmetric};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
 use crate::workspace::Workspace;
+use nalgebra::DMatrix;
 
 pass! {
 /// M(θ), symmetric and positive definite, n × n, row-major into `M`; armature on the diagonal, and a JᵀJ for each rotor
@@ -80,5 +82,15 @@ impl Kernel for MassMatrix {
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [M, ..]) = (c.inputs, c.outputs);
         mass_matrix(c.model, theta, &mut c.memory.workspace, M);
+    }
+}
+
+impl Model<f64> {
+    /// M(θ): see [`mass_matrix`](mass_matrix()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn mass_matrix(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
+        self.matrix(MassMatrix, &[theta], &self.environment())
     }
 }

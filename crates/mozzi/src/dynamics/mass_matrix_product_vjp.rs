@@ -5,13 +5,16 @@ use super::bias_forces::take_zeros;
 use super::derivatives::outward_pass;
 use super::vjp::{add_products, from_rest, of_base};
 use crate::kinematics::joint_transforms;
+use crate::model::Error;
 use crate::model::Model;
+use crate::quantities::vectors;
 use crate::quantities::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, Declaration, Kernel, Memory, Quantity, THETA, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 use crate::workspace::Workspace;
+use nalgebra::DVector;
 
 /// The gradient of xᵀM(θ)θ̈ for a constant x, `[xᵀ∂(Mθ̈)/∂θ, Mx]`, each n long; along velocities.
 /// `unused` is n numbers of memory.
@@ -66,5 +69,16 @@ impl Kernel for MassMatrixProductVjp {
         let Memory { workspace, matrix, .. } = c.memory;
         let unused = sized(matrix, c.model.n(), S::zero());
         mass_matrix_product_vjp(c.model, theta, ddtheta, x, workspace, unused, [a, b]);
+    }
+}
+
+impl Model<f64> {
+    /// `[xᵀ∂(M(θ)a)/∂θ, M(θ)x]`, the gradient of xᵀMa: see
+    /// [`mass_matrix_product_vjp`](mass_matrix_product_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn mass_matrix_product_vjp(&self, theta: &[f64], a: &[f64], x: &[f64]) -> Result<[DVector<f64>; 2], Error> {
+        self.compute(MassMatrixProductVjp, &[theta, a, x], &self.environment()).map(vectors)
     }
 }

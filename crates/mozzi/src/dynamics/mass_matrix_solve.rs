@@ -5,12 +5,14 @@ use super::joint_friction::joint_friction;
 use super::mass_matrix::mass_matrix;
 use super::spring_forces::add_spring_forces;
 use crate::linalg::ldlt;
+use crate::model::Error;
 use crate::model::{Environment, Model};
 use crate::quantities::{
     ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::{Scalar, pass};
 use crate::workspace::Workspace;
+use nalgebra::DVector;
 
 pass! {
 /// The joint accelerations θ̈ by solving M(θ)θ̈ = τ − h(θ, θ̇) − f(θ, θ̇), with h by one call of inverse dynamics. `M`
@@ -67,5 +69,22 @@ impl Kernel for ForwardDynamicsByMassMatrix {
         let Memory { workspace, matrix, .. } = c.memory;
         let M = sized(matrix, n * n, S::zero());
         forward_dynamics_by_mass_matrix(c.model, theta, dtheta, tau, c.environment, workspace, M, ddtheta);
+    }
+}
+
+impl Model<f64> {
+    /// θ̈ from τ by composite rigid bodies and the factors of M along the tree: see
+    /// [`forward_dynamics_by_mass_matrix`](forward_dynamics_by_mass_matrix()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
+    pub fn forward_dynamics_by_mass_matrix(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &[f64],
+        environment: &Environment,
+    ) -> Result<DVector<f64>, Error> {
+        self.vector(ForwardDynamicsByMassMatrix, &[theta, dtheta, tau], environment)
     }
 }

@@ -27,6 +27,7 @@ mod closed_form;
 mod composite_bodies;
 pub(crate) mod coriolis_matrix;
 mod derivatives;
+mod directional_derivative;
 pub(crate) mod energy;
 pub(crate) mod energy_gradients;
 pub(crate) mod force_derivatives;
@@ -48,6 +49,7 @@ pub(crate) mod momentum;
 pub(crate) mod momentum_vjp;
 pub(crate) mod parameter_vjp;
 pub(crate) mod regressor;
+pub(crate) mod results;
 mod several_axes;
 mod siblings;
 pub(crate) mod spring_forces;
@@ -57,7 +59,6 @@ mod vjp;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use armature::set_armature;
 pub use base_parameters::BaseParameters;
 pub use bias_forces::{bias_forces, gravity_forces, tip_forces, velocity_product};
 pub use center_of_mass::center_of_mass;

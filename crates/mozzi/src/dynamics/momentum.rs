@@ -5,7 +5,9 @@ use super::inverse_dynamics::newton_euler;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
+use crate::model::Error;
 use crate::model::{Environment, Model};
+use crate::quantities::Query;
 use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{SpatialInertia, Twist, Wrench};
@@ -196,5 +198,25 @@ impl Kernel for MomentumRate {
         let ([theta, dtheta, ddtheta, ..], [dh, ..], point) = (c.inputs, c.outputs, c.point);
         let rate = momentum_rate(c.model, theta, dtheta, ddtheta, &mut c.memory.workspace);
         dh.copy_from_slice(&rate.about(point).to_array());
+    }
+}
+
+impl Model<f64> {
+    /// The momentum of the moving links and a floating base, (angular, linear) in kg m²/s and kg m/s, about a point of
+    /// {s}, in {s} coordinates: see [`momentum`](momentum()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn momentum(&self, theta: &[f64], dtheta: &[f64], about: Vec3) -> Result<Wrench, Error> {
+        self.wrench(Query::from(Momentum).about(about), &[theta, dtheta])
+    }
+
+    /// ḣ, the rate of the momentum about a fixed point of {s}; with the present centre of mass as the point, the rate
+    /// of the centroidal momentum. See [`momentum_rate`](momentum_rate()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn momentum_rate(&self, theta: &[f64], dtheta: &[f64], ddtheta: &[f64], about: Vec3) -> Result<Wrench, Error> {
+        self.wrench(Query::from(MomentumRate).about(about), &[theta, dtheta, ddtheta])
     }
 }

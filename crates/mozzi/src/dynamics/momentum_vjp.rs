@@ -8,7 +8,10 @@ use super::derivatives::outward_pass;
 use super::vjp::{add_products, from_rest, in_base};
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
+use crate::model::Error;
 use crate::model::Model;
+use crate::quantities::Query;
+use crate::quantities::vectors;
 use crate::quantities::{
     ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
     sized,
@@ -16,6 +19,7 @@ use crate::quantities::{
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 use crate::workspace::Workspace;
+use nalgebra::DVector;
 
 /// The gradient of wᵀh, h the [`momentum`](super::momentum()) about a point p of {s}, for a constant w: `[wᵀ∂h/∂θ,
 /// wᵀ∂h/∂θ̇]`, each n long; along velocities. `unused` is n numbers of memory.
@@ -135,5 +139,40 @@ impl Kernel for MomentumRateVjp {
         let ([theta, dtheta, ddtheta, w], [a, b, d, _]) = (c.inputs, c.outputs);
         let (w, workspace) = (Twist::from_array(six(w)), &mut c.memory.workspace);
         momentum_rate_vjp(c.model, theta, dtheta, ddtheta, c.point, w, workspace, [a, b, d]);
+    }
+}
+
+impl Model<f64> {
+    /// `[wᵀ∂h/∂θ, wᵀ∂h/∂θ̇]`, the gradient of wᵀh, h the momentum about a point of {s}: see
+    /// [`momentum_vjp`](momentum_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn momentum_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        about: Vec3,
+        w: Twist,
+    ) -> Result<[DVector<f64>; 2], Error> {
+        let query = Query::from(MomentumVjp).about(about);
+        self.compute(query, &[theta, dtheta, &w.to_array()], &self.environment()).map(vectors)
+    }
+
+    /// `[wᵀ∂ḣ/∂θ, wᵀ∂ḣ/∂θ̇, wᵀ∂ḣ/∂θ̈]`, the gradient of wᵀḣ: see
+    /// [`momentum_rate_vjp`](momentum_rate_vjp()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn momentum_rate_vjp(
+        &self,
+        theta: &[f64],
+        dtheta: &[f64],
+        ddtheta: &[f64],
+        about: Vec3,
+        w: Twist,
+    ) -> Result<[DVector<f64>; 3], Error> {
+        let query = Query::from(MomentumRateVjp).about(about);
+        self.compute(query, &[theta, dtheta, ddtheta, &w.to_array()], &self.environment()).map(vectors)
     }
 }

@@ -1,8 +1,10 @@
 //! Springs in the joints.
 
+use crate::model::Error;
 use crate::model::Model;
 use crate::quantities::{Call, Declaration, FORCE, Kernel, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
+use nalgebra::DVector;
 
 /// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: the forces that hold the joints against their springs. θ is not
 /// wrapped. A mimic joint's spring acts on q = ratio θ + offset and adds ratio k(q − θ₀) to its source joint. A ball's
@@ -55,5 +57,15 @@ impl Kernel for SpringForces {
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, ..], [f, ..]) = (c.inputs, c.outputs);
         spring_forces(c.model, theta, f);
+    }
+}
+
+impl Model<f64> {
+    /// f_s(θ) = k(θ − θ₀): see [`spring_forces`](spring_forces()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn spring_forces(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.vector(SpringForces, &[theta], &self.environment())
     }
 }

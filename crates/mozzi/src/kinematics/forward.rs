@@ -2,10 +2,13 @@
 
 use super::base_pose;
 use crate::lie::SE3;
+use crate::model::Error;
 use crate::model::{FrameId, Model};
 use crate::quantities::{Call, Declaration, Dim, Kernel, Of, Quantity, THETA, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::workspace::Workspace;
+use alloc::vec;
+use alloc::vec::Vec;
 
 /// The configuration `T_sb` of a frame {b} relative to {s} at the positions θ.
 ///
@@ -93,5 +96,28 @@ impl Kernel for FramePoses {
         for (T, pose) in T.chunks_exact_mut(16).zip(poses) {
             T.copy_from_slice(pose.to_matrix().as_flattened());
         }
+    }
+}
+
+impl Model<f64> {
+    /// `T_sb` of a frame {b} relative to {s}: see [`forward_kinematics`](forward_kinematics()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn forward_kinematics(&self, theta: &[f64], frame: FrameId) -> Result<SE3, Error> {
+        self.check_lengths(theta, [])?;
+        self.check_frame(frame)?;
+        Ok(forward_kinematics(self, theta, frame))
+    }
+
+    /// The configurations of all frames relative to {s}, in the order of [`frames`](Self::frames).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn frame_poses(&self, theta: &[f64]) -> Result<Vec<SE3>, Error> {
+        self.check_lengths(theta, [])?;
+        let mut poses = vec![SE3::identity(); self.frames().len()];
+        frame_poses(self, theta, &mut Workspace::new(self), &mut poses);
+        Ok(poses)
     }
 }

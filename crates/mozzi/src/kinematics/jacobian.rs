@@ -2,7 +2,9 @@
 
 use super::base_pose;
 use crate::lie::SE3;
+use crate::model::Error;
 use crate::model::{FrameId, Model};
+use crate::quantities::Query;
 use crate::quantities::{Call, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
@@ -160,4 +162,32 @@ impl Kernel for BodyJacobian {
         body_jacobian(c.model, theta, frame, columns);
         by_rows(columns.iter().map(|column| column.to_array()), J);
     }
+}
+
+impl Model<f64> {
+    /// `J_s`(θ), in base coordinates: see [`space_jacobian`](space_jacobian()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn space_jacobian(&self, theta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
+        self.jacobian(Query::from(SpaceJacobian).of(frame), &[theta])
+    }
+
+    /// `J_b`(θ), in the frame's coordinates: see [`body_jacobian`](body_jacobian()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn body_jacobian(&self, theta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
+        self.jacobian(Query::from(BodyJacobian).of(frame), &[theta])
+    }
+
+    pub(crate) fn jacobian(&self, query: Query, inputs: &[&[f64]]) -> Result<Jacobian, Error> {
+        Ok(jacobian_of(&self.first(query, inputs, &self.environment())?))
+    }
+}
+
+/// A Jacobian from its six rows.
+pub(crate) fn jacobian_of(rows: &[f64]) -> Jacobian {
+    let n = rows.len() / 6;
+    Jacobian((0..n).map(|j| Twist::from_array(core::array::from_fn(|row| rows[row * n + j]))).collect())
 }

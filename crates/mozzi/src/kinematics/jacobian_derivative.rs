@@ -1,12 +1,17 @@
 //! ∂J_i/∂θ_j of both Jacobians (Modern Robotics, exercise 8.6).
 
 use super::base_pose;
+use crate::kinematics::Jacobian;
+use crate::kinematics::jacobian_of;
 use crate::lie::SE3;
+use crate::model::Error;
 use crate::model::{FrameId, Model};
+use crate::quantities::Query;
 use crate::quantities::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
 use crate::workspace::Workspace;
+use alloc::vec::Vec;
 
 /// ∂J_i/∂θ_j of the body Jacobian, at `H[i * n + j]`: `[ad_{J_i}]` J_j if joint j is between joint i and the frame,
 /// else 0. For a floating base the six derivatives are along its twist in its own coordinates.
@@ -157,5 +162,25 @@ impl Kernel for BodyJacobianDerivative {
 fn by_velocity<S: Scalar>(columns: &[Twist<S>], n: usize, H: &mut [S]) {
     for (j, matrix) in H.chunks_exact_mut((6 * n).max(1)).enumerate() {
         by_rows((0..n).map(|i| columns[i * n + j].to_array()), matrix);
+    }
+}
+
+impl Model<f64> {
+    /// ∂`J_s`/∂θ_j for each joint j: see [`space_jacobian_derivative`](space_jacobian_derivative()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn space_jacobian_derivative(&self, theta: &[f64], frame: FrameId) -> Result<Vec<Jacobian>, Error> {
+        let H = self.first(Query::from(SpaceJacobianDerivative).of(frame), &[theta], &self.environment())?;
+        Ok(H.chunks_exact(6 * self.n().max(1)).map(jacobian_of).collect())
+    }
+
+    /// ∂`J_b`/∂θ_j for each joint j: see [`body_jacobian_derivative`](body_jacobian_derivative()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn body_jacobian_derivative(&self, theta: &[f64], frame: FrameId) -> Result<Vec<Jacobian>, Error> {
+        let H = self.first(Query::from(BodyJacobianDerivative).of(frame), &[theta], &self.environment())?;
+        Ok(H.chunks_exact(6 * self.n().max(1)).map(jacobian_of).collect())
     }
 }

@@ -1,7 +1,10 @@
 //! Rates of the Jacobians along a motion.
 
 use super::{base_pose, base_twist};
+use crate::kinematics::Jacobian;
+use crate::model::Error;
 use crate::model::{FrameId, Model};
+use crate::quantities::Query;
 use crate::quantities::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
@@ -142,5 +145,23 @@ impl Kernel for BodyJacobianRate {
         let columns = sized(&mut c.memory.twists, c.model.n(), Twist::zero());
         body_jacobian_rate(c.model, theta, dtheta, frame, columns);
         by_rows(columns.iter().map(|column| column.to_array()), dJ);
+    }
+}
+
+impl Model<f64> {
+    /// d`J_s`/dt: see [`space_jacobian_rate`](space_jacobian_rate()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn space_jacobian_rate(&self, theta: &[f64], dtheta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
+        self.jacobian(Query::from(SpaceJacobianRate).of(frame), &[theta, dtheta])
+    }
+
+    /// d`J_b`/dt: see [`body_jacobian_rate`](body_jacobian_rate()).
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
+    pub fn body_jacobian_rate(&self, theta: &[f64], dtheta: &[f64], frame: FrameId) -> Result<Jacobian, Error> {
+        self.jacobian(Query::from(BodyJacobianRate).of(frame), &[theta, dtheta])
     }
 }

@@ -14,6 +14,7 @@ mod link_twists;
 mod tests;
 
 pub(crate) use base::{base_motion, base_pose, base_twist};
+pub(crate) use jacobian::jacobian_of;
 pub use jacobian::twist_of;
 pub(crate) use joint_transforms::{joint_sines, joint_transforms};
 pub(crate) use link_twists::link_twists;

@@ -1,10 +1,13 @@
 //! Quantities at one state: checked, computed, pivots judged.
 
 use super::{Declaration, MassMatrix, Memory, Of, Query};
+use crate::linalg::Vec3;
 use crate::model::{Environment, Error, Model, Pivots};
 use crate::scalar::Scalar;
+use crate::spatial::Wrench;
 use alloc::vec;
 use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
 
 impl Model<f64> {
     /// Any quantity at one state: its outputs in their order, matrices by rows. Parts of the environment that the
@@ -39,6 +42,51 @@ impl Model<f64> {
         query.evaluate_f64(self, inputs, environment, memory, &mut slices);
         query.check_pivots(self, inputs[0], memory)?;
         Ok(outputs)
+    }
+
+    /// The first output of a quantity.
+    pub(crate) fn first<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<Vec<f64>, Error> {
+        Ok(self.compute(query, inputs, environment)?.swap_remove(0))
+    }
+
+    pub(crate) fn vector<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<DVector<f64>, Error> {
+        Ok(DVector::from_vec(self.first(query, inputs, environment)?))
+    }
+
+    /// The first output, with n columns.
+    pub(crate) fn matrix<'q>(
+        &self,
+        query: impl Into<Query<'q>>,
+        inputs: &[&[f64]],
+        environment: &Environment,
+    ) -> Result<DMatrix<f64>, Error> {
+        Ok(self.rows(&self.first(query, inputs, environment)?))
+    }
+
+    /// A matrix of n columns from its rows.
+    pub(crate) fn rows(&self, entries: &[f64]) -> DMatrix<f64> {
+        let columns = self.n();
+        DMatrix::from_row_slice(entries.len().checked_div(columns).unwrap_or(0), columns, entries)
+    }
+
+    pub(crate) fn point(&self, query: impl Into<Query<'static>>, inputs: &[&[f64]]) -> Result<Vec3, Error> {
+        let found = self.first(query, inputs, &self.environment())?;
+        Ok(Vec3(core::array::from_fn(|k| found[k])))
+    }
+
+    pub(crate) fn wrench(&self, query: Query, inputs: &[&[f64]]) -> Result<Wrench, Error> {
+        let found = self.first(query, inputs, &self.environment())?;
+        Ok(Wrench::from_array(core::array::from_fn(|k| found[k])))
     }
 
     /// M(θ) by rows, lengths being checked.
@@ -86,4 +134,9 @@ pub(crate) fn are_clear<S: Scalar + Into<f64>>(declaration: &Declaration, memory
     // an earlier task's pivots do not matter to other quantities
     let pivots = || memory.pivots().take(if declaration.of == Of::Task { 2 } else { 1 });
     !declaration.divides || pivots().all(|pivots| Pivots::new(pivots).are_clear())
+}
+
+pub(crate) fn vectors<const K: usize>(found: Vec<Vec<f64>>) -> [DVector<f64>; K] {
+    let mut found = found.into_iter();
+    core::array::from_fn(|_| DVector::from_vec(found.next().unwrap_or_default()))
 }

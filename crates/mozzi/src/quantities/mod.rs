@@ -23,7 +23,7 @@ mod memory;
 mod query;
 mod subject;
 
-pub(crate) use compute::are_clear;
+pub(crate) use compute::{are_clear, vectors};
 pub(crate) use declaration::*;
 pub use declaration::{Declaration, Dim, INPUTS, Input, Of, Output, Uses};
 #[doc(hidden)]

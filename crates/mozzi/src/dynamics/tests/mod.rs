@@ -2,6 +2,7 @@
 
 mod derivatives;
 mod mimics;
+mod momentum;
 mod numbers;
 mod regressor;
 mod rotors;

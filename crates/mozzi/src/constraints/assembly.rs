@@ -1,6 +1,6 @@
 //! Positions, velocities and accelerations that satisfy the constraints.
 
-use super::{Rows, columns, least_squares};
+use super::rows::{Rows, columns, least_squares};
 use crate::model::description::JointKind;
 use crate::model::{Bounds, Error, Freedom, Model};
 use crate::model::{difference, integrate};

@@ -1,8 +1,8 @@
 //! Constrained forward dynamics with the wrenches of the constraints.
 
-use super::least_squares;
+use super::rows::least_squares;
+use super::wrench_of;
 use crate::SE3;
-use crate::constraints::wrench_of;
 use crate::model::{End, Environment, Error, Model, TieKind};
 use crate::quantities as q;
 use crate::spatial::Wrench;

@@ -1,8 +1,8 @@
 //! Derivatives of constrained forward dynamics.
 
-use super::Rows;
+use super::rows::Rows;
+use super::{constraint_jacobian, delassus};
 use crate::ConstraintMemory;
-use crate::constraints::{constraint_jacobian, delassus};
 use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::seed_direction;

@@ -1,8 +1,7 @@
 //! The derivatives of inverse and forward dynamics, and of the parts of τ, as methods.
 
-use crate::model::{Environment, Error, FrameId, Model};
+use crate::model::{Environment, Error, Model};
 use crate::quantities as q;
-use crate::spatial::Wrench;
 use nalgebra::{DMatrix, DVector};
 
 /// The derivatives of τ, each n × n with row i for τ_i. Derivatives with respect to θ are along the velocities: for a
@@ -67,31 +66,5 @@ impl Model<f64> {
         let mut found = found.iter().map(|entries| self.rows(entries));
         let mut next = || found.next().expect("three matrices");
         Ok(ForwardDynamicsDerivatives { ddtheta, d_theta: next(), d_dtheta: next(), d_tau: next() })
-    }
-
-    /// ∂g/∂θ under the model's gravity: see [`gravity_forces_derivative`](crate::dynamics::gravity_forces_derivative).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`].
-    pub fn gravity_forces_derivative(&self, theta: &[f64]) -> Result<DMatrix<f64>, Error> {
-        self.matrix(q::GravityForcesDerivative, &[theta], &self.environment())
-    }
-
-    /// ∂(JᵀF)/∂θ for wrenches that frames apply to the environment: see
-    /// [`tip_forces_derivative`](crate::dynamics::tip_forces_derivative).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
-    pub fn tip_forces_derivative(&self, theta: &[f64], applied: &[(FrameId, Wrench)]) -> Result<DMatrix<f64>, Error> {
-        self.matrix(q::TipForcesDerivative, &[theta], &Environment { applied, ..self.environment() })
-    }
-
-    /// ∂(M(θ)x)/∂θ for a constant x: see
-    /// [`mass_matrix_product_derivative`](crate::dynamics::mass_matrix_product_derivative).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`].
-    pub fn mass_matrix_product_derivative(&self, theta: &[f64], x: &[f64]) -> Result<DMatrix<f64>, Error> {
-        self.matrix(q::MassMatrixProductDerivative, &[theta, x], &self.environment())
     }
 }

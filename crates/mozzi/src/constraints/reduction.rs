@@ -1,6 +1,6 @@
 //! A mechanism in its own coordinates: M, h and g of independent joints.
 
-use super::{Rows, SINGULAR, columns, least_squares};
+use super::rows::{Rows, SINGULAR, columns, least_squares};
 use crate::model::{Environment, Error, Model};
 use alloc::format;
 use alloc::vec::Vec;

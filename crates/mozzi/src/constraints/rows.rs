@@ -1,20 +1,6 @@
-//! Robots with constraints as methods (Modern Robotics, section 8.7): dynamics, assembly, rank, reduction.
+//! The rows of all constraints at a state, dense.
 
-mod assembly;
-mod derivatives;
-mod dynamics;
-mod inverse_dynamics;
-mod rank;
-mod reduction;
-#[cfg(test)]
-mod tests;
-
-pub use derivatives::ConstrainedForwardDynamicsDerivatives;
-pub use dynamics::ConstrainedDynamics;
-pub use rank::ConstraintRank;
-pub use reduction::Reduction;
-
-use crate::constraints::constraint_jacobian;
+use super::constraint_jacobian;
 use crate::model::{Error, Model};
 use crate::scalar::Scalar;
 use crate::workspace::Workspace;
@@ -52,7 +38,7 @@ impl Model<f64> {
     }
 
     /// The indices of the velocities of the joints with these names.
-    fn velocities_of(&self, names: &[&str]) -> Result<Vec<usize>, Error> {
+    pub(crate) fn velocities_of(&self, names: &[&str]) -> Result<Vec<usize>, Error> {
         let mut found = Vec::new();
         for &name in names {
             let Some(k) = self.joint_names().position(|known| known == name) else {
@@ -70,13 +56,13 @@ impl Model<f64> {
     }
 
     /// The name of a velocity.
-    fn velocity_name(&self, j: usize) -> String {
+    pub(crate) fn velocity_name(&self, j: usize) -> String {
         self.velocity_names().nth(j).unwrap_or_default().to_string()
     }
 }
 
 /// The x of least norm that minimizes ‖Ax − b‖.
-fn least_squares(A: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
+pub(crate) fn least_squares(A: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     if A.nrows() == 0 || A.ncols() == 0 {
         return DVector::zeros(A.ncols());
     }
@@ -86,6 +72,6 @@ fn least_squares(A: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
 }
 
 /// The columns with these indices.
-fn columns(A: &DMatrix<f64>, places: &[usize]) -> DMatrix<f64> {
+pub(crate) fn columns(A: &DMatrix<f64>, places: &[usize]) -> DMatrix<f64> {
     A.select_columns(places)
 }

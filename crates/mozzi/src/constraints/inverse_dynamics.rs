@@ -1,6 +1,7 @@
 //! The motors' torques of a motion of a robot with constraints.
 
-use super::{ConstrainedDynamics, Rows, SINGULAR, least_squares};
+use super::ConstrainedDynamics;
+use super::rows::{Rows, SINGULAR, least_squares};
 use crate::model::{Environment, Error, Model};
 use crate::scalar::Scalar;
 use alloc::format;

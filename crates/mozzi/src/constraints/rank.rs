@@ -1,6 +1,6 @@
 //! The rank of the constraints, and the rows that are redundant.
 
-use super::SINGULAR;
+use super::rows::SINGULAR;
 use crate::model::{Error, Model};
 use alloc::string::String;
 use alloc::vec::Vec;

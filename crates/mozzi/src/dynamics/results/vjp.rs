@@ -1,9 +1,7 @@
 //! Gradients of xᵀτ and xᵀθ̈, of the energies, of a frame's motion and of the momentum.
 
-use crate::linalg::Vec3;
-use crate::model::{Environment, Error, FrameId, Model};
-use crate::quantities::{self as q, Query};
-use crate::spatial::{Twist, Wrench};
+use crate::model::{Environment, Error, Model};
+use crate::quantities::{self as q, vectors};
 use alloc::vec::Vec;
 use nalgebra::{DVector, Matrix6xX, Vector3};
 
@@ -123,15 +121,6 @@ impl Model<f64> {
         self.compute(q::ForwardDynamicsParameterVjp, &[theta, dtheta, tau, x], environment).map(by_robot)
     }
 
-    /// `[xᵀ∂(M(θ)a)/∂θ, M(θ)x]`, the gradient of xᵀMa: see
-    /// [`mass_matrix_product_vjp`](crate::dynamics::mass_matrix_product_vjp()).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`].
-    pub fn mass_matrix_product_vjp(&self, theta: &[f64], a: &[f64], x: &[f64]) -> Result<[DVector<f64>; 2], Error> {
-        self.compute(q::MassMatrixProductVjp, &[theta, a, x], &self.environment()).map(vectors)
-    }
-
     /// ∂𝒦/∂θ, ∂𝒦/∂θ̇ and ∂𝒫/∂θ: see [`energy_gradients`](crate::dynamics::energy_gradients()).
     ///
     /// # Errors
@@ -146,71 +135,6 @@ impl Model<f64> {
         let [kinetic_d_theta, kinetic_d_dtheta, potential_d_theta] = vectors(found);
         Ok(EnergyGradients { kinetic_d_theta, kinetic_d_dtheta, potential_d_theta })
     }
-
-    /// `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, the gradient of wᵀ𝒱_b: see [`frame_twist_vjp`](crate::dynamics::frame_twist_vjp()).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
-    pub fn frame_twist_vjp(
-        &self,
-        theta: &[f64],
-        dtheta: &[f64],
-        frame: FrameId,
-        w: Wrench,
-    ) -> Result<[DVector<f64>; 2], Error> {
-        let query = Query::from(q::FrameTwistVjp).of(frame);
-        self.compute(query, &[theta, dtheta, &w.to_array()], &self.environment()).map(vectors)
-    }
-
-    /// `[wᵀ∂a_b/∂θ, wᵀ∂a_b/∂θ̇, J_bᵀw]`, the gradient of wᵀa_b: see
-    /// [`frame_acceleration_vjp`](crate::dynamics::frame_acceleration_vjp()).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
-    pub fn frame_acceleration_vjp(
-        &self,
-        theta: &[f64],
-        dtheta: &[f64],
-        ddtheta: &[f64],
-        frame: FrameId,
-        w: Wrench,
-    ) -> Result<[DVector<f64>; 3], Error> {
-        let query = Query::from(q::FrameAccelerationVjp).of(frame);
-        self.compute(query, &[theta, dtheta, ddtheta, &w.to_array()], &self.environment()).map(vectors)
-    }
-
-    /// `[wᵀ∂h/∂θ, wᵀ∂h/∂θ̇]`, the gradient of wᵀh, h the momentum about a point of {s}: see
-    /// [`momentum_vjp`](crate::dynamics::momentum_vjp()).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`].
-    pub fn momentum_vjp(
-        &self,
-        theta: &[f64],
-        dtheta: &[f64],
-        about: Vec3,
-        w: Twist,
-    ) -> Result<[DVector<f64>; 2], Error> {
-        let query = Query::from(q::MomentumVjp).about(about);
-        self.compute(query, &[theta, dtheta, &w.to_array()], &self.environment()).map(vectors)
-    }
-
-    /// `[wᵀ∂ḣ/∂θ, wᵀ∂ḣ/∂θ̇, wᵀ∂ḣ/∂θ̈]`, the gradient of wᵀḣ: see
-    /// [`momentum_rate_vjp`](crate::dynamics::momentum_rate_vjp()).
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`].
-    pub fn momentum_rate_vjp(
-        &self,
-        theta: &[f64],
-        dtheta: &[f64],
-        ddtheta: &[f64],
-        about: Vec3,
-        w: Twist,
-    ) -> Result<[DVector<f64>; 3], Error> {
-        let query = Query::from(q::MomentumRateVjp).about(about);
-        self.compute(query, &[theta, dtheta, ddtheta, &w.to_array()], &self.environment()).map(vectors)
-    }
 }
 
 fn by_robot(found: Vec<Vec<f64>>) -> ParameterVjp {
@@ -218,9 +142,4 @@ fn by_robot(found: Vec<Vec<f64>>) -> ParameterVjp {
     let six = |list: DVector<f64>| Matrix6xX::from_column_slice(list.as_slice());
     let d_gravity = Vector3::from_column_slice(gravity.as_slice());
     ParameterVjp { d_parameters, d_placements: six(placements), d_axes: six(axes), d_gravity }
-}
-
-fn vectors<const K: usize>(found: Vec<Vec<f64>>) -> [DVector<f64>; K] {
-    let mut found = found.into_iter();
-    core::array::from_fn(|_| DVector::from_vec(found.next().unwrap_or_default()))
 }
