@@ -81,7 +81,8 @@ pub use urdf::expressible::expressible;
 pub use urdf::write::{NotUrdf, write};
 
 use mozzi::{Description, Model};
-use report::finding::{Findings, Placed};
+use report::finding::Findings;
+use report::placed::Placed;
 use report::places::Places;
 use report::{problem, repair};
 use std::path::Path;
@@ -178,7 +179,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
         findings = cx.findings;
         description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));
     }
-    let Placed { mut diagnostics, errors, is_cut } = findings.place(&sources, dialect);
+    let Placed { mut diagnostics, errors, is_cut } = Placed::of(findings, &sources, dialect);
     diagnostics.extend(notes);
     let is_unused = |found: &Diagnostic| found.consequence() == Consequence::Unused;
     // a site's new name does not change the robot, so it is no error

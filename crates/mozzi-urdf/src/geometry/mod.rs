@@ -18,6 +18,7 @@ use crate::XacroArguments;
 use crate::report::diagnostic::Diagnostic;
 use crate::report::error::LoadError;
 use crate::report::finding::Findings;
+use crate::report::placed::Placed;
 use crate::text::context::Context;
 use crate::text::dialect::Dialect;
 use crate::text::expansion;
@@ -112,7 +113,7 @@ fn parse_in(
 }
 
 fn placed(shapes: Vec<Shape>, findings: Findings, sources: &[Source], dialect: Dialect) -> Geometry {
-    let placed = findings.place(sources, dialect);
+    let placed = Placed::of(findings, sources, dialect);
     let planes = Vec::new();
     Geometry { shapes, planes, left_out: placed.diagnostics.into_iter().map(Diagnostic::into_warning).collect() }
 }

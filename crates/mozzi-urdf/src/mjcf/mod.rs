@@ -49,7 +49,7 @@ mod compiler;
 mod contents;
 mod coordinates;
 mod equality;
-mod explain;
+pub(crate) mod explain;
 mod free;
 mod geom;
 mod ignored;
@@ -70,7 +70,6 @@ mod vocabulary;
 
 pub use actuated::Actuated;
 pub use actuator::{Actuation, Actuator, actuation, actuation_of};
-pub(crate) use explain::CODES;
 pub use explain::codes;
 pub(crate) use orientation::quaternion;
 

@@ -1,6 +1,6 @@
 //! The meaning and remedy of each diagnostic code.
 
-use crate::mjcf;
+use crate::mjcf::explain as mjcf;
 use crate::report::spelling::nearest;
 
 /// A code, without `mozzi::urdf::` or `mozzi::mjcf::`; its meaning; its remedy.
@@ -322,7 +322,7 @@ pub fn nearest_code(code: &str) -> Option<&'static str> {
     nearest(&short, codes().chain(mjcf::codes()))
 }
 
-/// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; those of MJCF are [`mjcf::codes`].
+/// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; those of MJCF are [`mjcf::codes`](crate::mjcf::codes).
 pub fn codes() -> impl Iterator<Item = &'static str> {
     let mut codes: Vec<&str> = CODES.iter().map(|&(code, ..)| code).collect();
     codes.sort_unstable();

@@ -1,9 +1,5 @@
 //! Findings of a reader, before their line and column are computed.
 
-use crate::report::diagnostic::Diagnostic;
-use crate::text::dialect::Dialect;
-use crate::text::expansion;
-use crate::text::source::{Source, Walker};
 use mozzi::model::Severity;
 use std::ops::Range;
 
@@ -52,7 +48,7 @@ impl Finding {
 
     /// Without words of the text, for a file whose content must not be shown. Findings about an `<include>` or an
     /// encoding have none.
-    fn without_content(self) -> Self {
+    pub fn without_content(self) -> Self {
         let says_nothing = ["include", "repeated_include", "too_large", "not_utf8", "empty"];
         if says_nothing.contains(&self.code) {
             return self;
@@ -71,17 +67,9 @@ impl Finding {
 /// All findings, the first thousand of either severity.
 #[derive(Default)]
 pub(crate) struct Findings {
-    kept: Vec<Finding>,
+    pub(super) kept: Vec<Finding>,
     errors: usize,
     warnings: usize,
-}
-
-/// All findings with their places, in the order of the file.
-pub(crate) struct Placed {
-    pub diagnostics: Vec<Diagnostic>,
-    pub errors: usize,
-    /// Errors were found and not kept.
-    pub is_cut: bool,
 }
 
 impl Findings {
@@ -118,30 +106,5 @@ impl Findings {
     pub fn moved(self, by: usize) -> impl Iterator<Item = Finding> {
         let moved = move |span: Range<usize>| span.start + by..span.end + by;
         self.kept.into_iter().map(move |finding| Finding { span: moved(finding.span), ..finding })
-    }
-
-    /// Looks up every place in one pass over the texts, which follow one another.
-    pub fn place(mut self, sources: &[Source], dialect: Dialect) -> Placed {
-        let is_cut = self.is_full();
-        self.kept.sort_by_key(|finding| finding.span.start);
-        let (mut diagnostics, mut kept) = (Vec::new(), self.kept.into_iter().peekable());
-        for (i, source) in sources.iter().enumerate() {
-            let end = sources.get(i + 1).map_or(usize::MAX, |next| next.base);
-            let file = source.file();
-            let mut walker = Walker::new(&file.text);
-            while let Some(mut finding) = kept.next_if(|finding| finding.span.start < end) {
-                finding = if source.is_shown { finding } else { finding.without_content() };
-                let local = |place: usize| place.saturating_sub(source.base);
-                let span = source.in_file(local(finding.span.start)..local(finding.span.end));
-                if let Some(expansion) = &source.expansion {
-                    diagnostics.push(expansion::placed(expansion, finding, span, dialect));
-                    continue;
-                }
-                finding.span = file.clamp(span);
-                let position = walker.advance(finding.span.start);
-                diagnostics.push(Diagnostic::new(finding, position, file.clone(), dialect));
-            }
-        }
-        Placed { diagnostics, errors: self.errors, is_cut }
     }
 }

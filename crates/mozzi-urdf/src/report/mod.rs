@@ -5,6 +5,7 @@ pub(crate) mod diagnostic;
 pub(crate) mod error;
 pub(crate) mod explain;
 pub(crate) mod finding;
+pub(crate) mod placed;
 pub(crate) mod places;
 #[cfg(feature = "pretty")]
 pub(crate) mod pretty;
