@@ -56,7 +56,7 @@ impl<'v> At<'v> {
         required.iter().filter(|key| self.value.get(**key).is_none()).map(error).collect()
     }
 
-    /// "joints[1].mimic", or the name of the whole.
+    /// `joints[1].mimic`, or the name of the whole.
     pub fn name(&self) -> String {
         let mut name = String::new();
         for step in &self.path {

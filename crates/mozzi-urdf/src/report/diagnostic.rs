@@ -48,7 +48,7 @@ impl Diagnostic {
         self.severity
     }
 
-    /// The code, such as `mozzi::urdf::zero_axis` or `mozzi::mjcf::zero_axis`; see [`explain`](crate::report::explain).
+    /// The code, such as `mozzi::urdf::zero_axis` or `mozzi::mjcf::zero_axis`; see [`explain`](crate::explain).
     pub fn code(&self) -> &str {
         &self.code
     }

@@ -32,7 +32,7 @@ impl std::error::Error for NotUrdf {}
 /// # Errors
 /// [`NotUrdf`] with everything that would be lost: balls, helical joints, axes that miss the child's frame, rotors of
 /// several joints, further frames, constraints, a list of motors, a named end effector, gravity other than (0, 0,
-/// −9.81), control characters in names, names that xacro would evaluate. [`expressible`](crate::urdf::expressible)
+/// −9.81), control characters in names, names that xacro would evaluate. [`expressible`](crate::expressible)
 /// replaces most of them. A constraint that was a `<drake:ball_constraint>` is written as one.
 pub fn write(description: &Description) -> Result<String, NotUrdf> {
     let reasons = not_urdf(description);
