@@ -194,3 +194,38 @@ fn a_robot_whose_matrices_do_not_fit_is_refused_before_the_work() {
         );
     }
 }
+
+#[test]
+fn pages_contain_nothing_of_this_machine_unless_it_is_allowed() {
+    let (folder, elsewhere) = (folder("host"), folder("host_elsewhere"));
+    let secret = file(&elsewhere, "secret.yaml", "length: 0.25\n");
+    let page = folder.join("page.html").to_str().expect("text").to_string();
+    let robot = |name: &str, inside: &str| {
+        let start = r#"<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>"#;
+        file(&folder, name, &format!("{start}{inside}</robot>"))
+    };
+    let variable = robot(
+        "env.urdf.xacro",
+        r#"<link name="$(env HOME)"/><joint name="j" type="fixed"><parent link="a"/><child link="$(env HOME)"/></joint>"#,
+    );
+    let yaml = format!(
+        r#"<xacro:property name="p" value="${{xacro.load_yaml('{secret}')}}"/><material name="m${{p['length']}}"/>"#
+    );
+    let yaml = robot("yaml.urdf.xacro", &yaml);
+    for (robot, expected) in [(&variable, "the environment variable `HOME`"), (&yaml, "secret.yaml")] {
+        for command in ["view", "play"] {
+            let (code, said) = complaint(&[command, robot, "--out", &page]);
+            assert!(code == 1 && said.contains(expected) && said.contains("--allow-host allows it"), "{said}");
+        }
+    }
+    text(&["view", &yaml, "--out", &page, "--allow-host"]);
+    // files of the robot's own folder, and of packages
+    let beside = robot(
+        "beside.urdf.xacro",
+        r#"<xacro:property name="p" value="${xacro.load_yaml('own.yaml')}"/><material name="m${p['length']}"/>"#,
+    );
+    file(&folder, "own.yaml", "length: 0.25\n");
+    text(&["view", &beside, "--out", &page]);
+    file(&elsewhere, "package.xml", "<package><name>elsewhere</name></package>");
+    text(&["view", &yaml, "--out", &page]);
+}

@@ -104,7 +104,7 @@ pub use consequence::{Consequence, consequence, unused};
 pub use diagnostic::Diagnostic;
 pub use edit::{EditError, EditedFile, drives_of_fixed_joints, edit, edit_files, edit_with_old_values};
 pub use error::LoadError;
-pub use expansion::expanded;
+pub use expansion::{expanded, taken_from_host};
 pub use explain::{codes, explain, nearest_code, remedy};
 pub use expressible::expressible;
 pub use mozzi::model::Severity;
