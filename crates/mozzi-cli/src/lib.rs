@@ -149,7 +149,8 @@ Examples:
   mozzi simulate ur5 --report fall.html                 the motion as one HTML file: 3-D view, plots
   mozzi simulate my_robot.xml --state home              from a keyframe; `mozzi info my_robot.xml` lists them
   mozzi plot energy double_pendulum swing.csv --out energy.svg
-  mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
+  mozzi view my_robot.urdf --out arm.html               the robot as one HTML file, a slider for each joint
+  mozzi view my_robot.urdf                              the same, served to the browser of this machine
   mozzi view double_pendulum swing.csv --out swing.html a motion from a table
   mozzi play my_robot.urdf                              the playground: drag, simulate, edit, read every quantity
 
