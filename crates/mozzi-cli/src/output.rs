@@ -3,7 +3,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
-use mozzi_text::whole_file::WholeFile;
+use mozzi_report::whole_file::WholeFile;
 use mozzi_urdf::files;
 use std::collections::BTreeSet;
 use std::fs::File;

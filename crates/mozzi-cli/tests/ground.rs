@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{complaint, file, folder, json, rows, text};
 use mozzi::Model;
-use mozzi::simulation::{Method, Options, Simulation, Zero};
+use mozzi_sim::{Method, Options, Simulation, Zero};
 
 const ARM: &str = r#"<robot name="stuck">
   <link name="base"/>

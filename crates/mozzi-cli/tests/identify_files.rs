@@ -166,7 +166,7 @@ fn held(folder: &Path) -> (Model, String) {
         row.for_each(|x| write!(table, ",{x:?}").expect("text"));
         table.push('\n');
         let half: Vec<f64> = (0..n).map(|j| wave(j, t + 0.5 / rate).0).collect();
-        mozzi::integrate(&truth, &mut theta, &half, 1.0 / rate);
+        mozzi::model::integrate(&truth, &mut theta, &half, 1.0 / rate);
     }
     (truth, common::file(folder, "held.csv", &table))
 }

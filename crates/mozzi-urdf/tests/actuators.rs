@@ -1,6 +1,6 @@
 //! MJCF's actuators and gravity compensation, compared with MuJoCo 4.0.0.
 
-use mozzi::simulation::{Input, Options};
+use mozzi_sim::{Input, Options, simulate};
 use mozzi_urdf::XacroArguments;
 use mozzi_urdf::mjcf::{Actuated, Actuation, actuation_of};
 
@@ -49,7 +49,7 @@ fn actuators_have_mujocos_forces() {
     assert_eq!(found.left_out, [""; 0]);
     let mut input = Actuated::new(&model, &found, &found.controls["k"]).expect("its own robot");
     let (key, mut tau) = (model.state("k").expect("a key"), [0.0; 4]);
-    input.torque(0.0, &key.theta, &key.dtheta, &mut tau).expect("its own robot");
+    input.add_forces(&key.theta, &key.dtheta, &mut tau);
     for (tau, expected) in tau.iter().zip(FORCES) {
         assert!((tau - expected).abs() < 1e-11, "{tau} {expected}");
     }
@@ -59,8 +59,19 @@ fn actuators_have_mujocos_forces() {
     let (e, mut moved) = (1e-6, key.dtheta.clone());
     moved[2] += e;
     let mut more = [0.0; 4];
-    input.torque(0.0, &key.theta, &moved, &mut more).expect("its own robot");
+    input.add_forces(&key.theta, &moved, &mut more);
     assert!(((tau[2] - more[2]) / e - damping[2]).abs() < 1e-6, "{} {}", (tau[2] - more[2]) / e, damping[2]);
+}
+
+struct Driven(Actuated);
+impl Input for Driven {
+    fn torque(&mut self, _: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
+        self.0.add_forces(theta, dtheta, tau);
+        Ok(())
+    }
+    fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        self.0.gains(stiffness, damping);
+    }
 }
 
 #[test]
@@ -77,8 +88,8 @@ fn a_held_pose_holds() {
     let key = model.state("k").expect("a key");
     let options = Options::new(1.0, 1000);
     let at = |controls: &[f64]| {
-        let input = Actuated::new(&model, &found, controls).expect("its own robot");
-        let motion = model.simulate(&key.theta, &key.dtheta, input, &options).expect("a motion");
+        let input = Driven(Actuated::new(&model, &found, controls).expect("its own robot"));
+        let motion = simulate(&model, &key.theta, &key.dtheta, input, &options).expect("a motion");
         motion.last().theta.to_vec()
     };
     let held = at(&found.controls["k"]);

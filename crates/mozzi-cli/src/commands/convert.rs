@@ -1,15 +1,14 @@
 //! `mozzi convert`: the same robot in another file, or an edited one.
 
-pub mod edits;
 pub mod urdf;
 
 use super::screws;
+use crate::edits::EditArguments;
 use crate::failure::{self, Failure, Result};
 use crate::output::Output;
 use crate::robot::PolicyArguments;
 use crate::robot_json;
 use clap::Args;
-use edits::EditArguments;
 use std::io::Write;
 use std::path::Path;
 use urdf::LeftOut;

@@ -1,10 +1,10 @@
 //! `mozzi excite`: a motion that determines a robot's parameters.
 
 use crate::columns::{Columns, save};
-use crate::commands::convert::edits;
+use crate::edits;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{array, number, numbers};
-use crate::robot::RobotArguments;
+use crate::robot::FileArguments;
 use crate::tables::format::Format;
 use crate::text::{Page, table};
 use crate::{interrupt, json};
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 #[derive(Args, Debug)]
 pub struct ExciteArguments {
     #[command(flatten)]
-    robot: RobotArguments,
+    robot: FileArguments,
     /// Duration, s
     #[arg(long, value_name = "SECONDS", default_value = "20", allow_hyphen_values = true)]
     duration: String,
@@ -87,7 +87,7 @@ enum Place {
 pub fn run(arguments: &ExciteArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let whole = arguments.robot.load()?;
-    let locks = edits::locks(&arguments.lock)?;
+    let locks = edits::locks(&arguments.lock, &whole)?;
     let model = if locks.is_empty() { whole } else { whole.with_locked_joints(&locks)? };
     let options = arguments.options(&model)?;
     for (name, [low, high]) in model.joint_names().zip(&options.limits.position) {

@@ -1,12 +1,13 @@
 //! `mozzi play`: the playground, in a file or served to this machine's browser.
 
 use crate::columns::save;
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::input;
 use crate::json::print;
 use crate::report::MeshArguments;
 use crate::robot::RobotArguments;
 use crate::serve;
+use crate::state::StartArguments;
 use clap::{Arg, Args};
 use mozzi::Model;
 use mozzi_report::{Played, play_html};
@@ -21,6 +22,8 @@ const FIRST: &str = "panda";
 pub struct PlayArguments {
     #[command(flatten)]
     robot: RobotArguments,
+    #[command(flatten)]
+    start: StartArguments,
     #[command(flatten)]
     meshes: MeshArguments,
     /// Write the page to a file instead of serving it
@@ -37,7 +40,10 @@ pub fn model(argument: Arg) -> Arg {
 }
 
 pub fn run(arguments: &PlayArguments) -> Result<String> {
-    let model = arguments.robot.load()?;
+    let model = arguments.robot.load_at(|model| Ok(arguments.start.read(model)?.0))?;
+    if arguments.start.dtheta.is_some() {
+        return Err(Failure::wrong("--dtheta has no effect: the playground begins at rest"));
+    }
     let name = &model.description().name;
     let page = page(arguments, &model)?;
     let size = format!("page: {:.1} MB", page.len() as f64 / 1e6);
@@ -57,7 +63,10 @@ fn page(arguments: &PlayArguments, model: &Model) -> Result<String> {
         None => text(&arguments.robot)?,
     };
     let drawing = arguments.meshes.drawing(&arguments.robot)?;
-    Ok(play_html(&Played { name: input::name(name_or_path), file: &file.0, text: &file.1, model, drawing: &drawing }))
+    let theta = if arguments.start.is_given() { Some(arguments.start.read(model)?.0) } else { None };
+    let name = input::name(name_or_path);
+    let theta = theta.as_deref();
+    Ok(play_html(&Played { name, file: &file.0, text: &file.1, model, drawing: &drawing, theta }))
 }
 
 /// A name and the text of the robot's file, expanded if it is xacro.

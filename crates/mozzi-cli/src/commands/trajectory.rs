@@ -1,5 +1,6 @@
 //! `mozzi trajectory`: plans a motion.
 
+use crate::angles;
 use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
@@ -28,7 +29,7 @@ pub struct TrajectoryArguments {
     robot: RobotArguments,
     /// Initial positions, or the name of a state [default: the robot's start, else joints at 0 and a floating base
     /// at {s}]
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
+    #[arg(long, visible_aliases = ["theta", "q"], value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     from: Option<String>,
     /// Final positions, or the name of a state
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
@@ -49,7 +50,7 @@ pub struct TrajectoryArguments {
     #[arg(long)]
     profile: Option<Shaped>,
     /// Duration, s [default: as short as the limits allow]
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    #[arg(long, alias = "duration", value_name = "SECONDS", allow_hyphen_values = true)]
     time: Option<String>,
     /// trapezoidal only: the fraction of the time spent accelerating, and decelerating
     #[arg(long, value_name = "FRACTION", default_value = "0.25", allow_hyphen_values = true)]
@@ -64,7 +65,7 @@ pub struct TrajectoryArguments {
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     max_torque: Option<String>,
     /// Time between two rows, s
-    #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
     step: String,
     /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n
     #[arg(long, value_name = "FILE.csv")]
@@ -102,7 +103,7 @@ const PLACES: usize = 500;
 
 pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
-    let model = arguments.robot.load()?;
+    let model = arguments.robot.load_at(|model| positions("--from", arguments.from.as_deref(), model))?;
     let limits = arguments.limits(&model)?;
     let motion = arguments.motion(&model, &limits)?;
     let step = number("--step", &arguments.step)?;
@@ -311,11 +312,13 @@ fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limit
     let mut cells =
         vec![std::iter::once("t [s]".to_string()).chain((1..=shown).map(|j| format!("θ_{j}"))).collect::<Vec<_>>()];
     let picked: Vec<usize> = (0..=SHOWN).map(|k| k * (rows.len() - 1) / SHOWN).collect();
-    let theta = Decimals::of(rows.iter().flat_map(|(_, row)| &row.theta[..shown]));
+    let are_angles = angles::of_positions(model);
+    let of = |row: &Desired| angles::shown(&row.theta[..shown], &are_angles[..shown]);
+    let theta = Decimals::of(&rows.iter().flat_map(|(_, row)| of(row)).collect::<Vec<_>>());
     let time = Decimals::of(rows.iter().map(|(t, _)| t));
     for &k in &picked {
         let (t, row) = &rows[k];
-        cells.push(std::iter::once(time.show(*t)).chain(row.theta[..shown].iter().map(|&q| theta.show(q))).collect());
+        cells.push(std::iter::once(time.show(*t)).chain(of(row).into_iter().map(|q| theta.show(q))).collect());
     }
     cells.dedup();
     page.blank().lines(&table(&cells, "r")).blank();
@@ -337,6 +340,10 @@ fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limit
         } else {
             String::new()
         };
+        let are_angles = angles::of_velocities(model);
+        let is_of_angles = what != "torque" && are_angles.iter().all(|&is_angle| is_angle);
+        let most = if is_of_angles && angles::are_degrees() { most.to_degrees() } else { most };
+        let unit = if is_of_angles { unit } else { angles::in_radians(&unit) };
         page.line(format!("largest {what}: {} {unit}{of}", scalar(most)));
     }
     if let Some(file) = file {

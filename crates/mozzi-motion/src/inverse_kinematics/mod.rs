@@ -9,6 +9,7 @@
 mod bounds;
 mod goal;
 mod options;
+mod reach;
 mod secondary;
 mod step;
 
@@ -20,10 +21,12 @@ pub use step::Method;
 use crate::Error;
 use crate::error::check;
 use bounds::Within;
+use mozzi::kinematics::{body_jacobian, forward_kinematics};
 use mozzi::model::Bounds;
+use mozzi::model::integrate;
 use mozzi::nalgebra::Vector6;
-use mozzi::testing::Random;
-use mozzi::{FrameId, Model, Twist, body_jacobian, forward_kinematics, integrate};
+use mozzi::random::Random;
+use mozzi::{FrameId, Model, Twist};
 use step::Step;
 
 /// A start is given up when this many iterations have not halved its error.

@@ -1,7 +1,8 @@
 //! Paths without timing: θ(s) for s from 0 to 1.
 
 use crate::Error;
-use mozzi::{Model, difference, integrate};
+use mozzi::Model;
+use mozzi::model::{difference, integrate};
 
 /// A point of a path.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,9 @@
 use super::*;
 use crate::Error;
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::difference;
 use mozzi::testing::{Random, floating_tree, state, tree};
-use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Twist, Vec3, difference};
+use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Twist, Vec3};
 
 fn robot(name: &str) -> Model {
     mozzi_urdf::open(name).expect("embedded").build().expect("sound")

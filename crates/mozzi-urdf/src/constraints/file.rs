@@ -196,7 +196,7 @@ impl Entry for At {
         let found = match &self.node.value {
             Value::Null => "null".to_string(),
             Value::Number(x) => x.to_string(),
-            Value::Text(text) => format!("`{}`", crate::vocabulary::shown(text)),
+            Value::Text(text) => format!("`{}`", crate::urdf::vocabulary::shown(text)),
             Value::Flag(flag) => flag.to_string(),
             Value::List(list) => format!("a list of {}", list.len()),
             Value::Map(_) => "a map".to_string(),

@@ -3,7 +3,7 @@
 use super::vertices::extreme_vertices;
 use super::{Form, Shape, locate};
 use crate::files;
-use mozzi::simulation::{ContactPoint, Support};
+use mozzi::model::{ContactPoint, Support};
 use mozzi::{Model, Vec3};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -141,8 +141,7 @@ mod tests {
         assert!(found.points.iter().all(|point| point.mu == 0.5 && point.restitution == 0.1));
         assert_eq!((&*found.points[0].name, &*found.points[3].name), ("foot", "foot.3"));
         // the farthest down: the capsule's lower end at −1.3, the box at −1, the lying cylinder at −0.2
-        let contacts =
-            mozzi::simulation::Contacts { points: found.points, planes: vec![mozzi::simulation::Plane::ground()] };
+        let contacts = mozzi_sim::Contacts { points: found.points, planes: vec![mozzi_sim::Plane::ground()] };
         let gaps = contacts.gaps(&model, 0.0, &[0.0]);
         let lowest = |range: std::ops::Range<usize>| gaps[range].iter().fold(f64::INFINITY, |a, b| a.min(*b));
         for (range, z) in [(0..8, -1.0), (8..9, -0.1), (9..11, -0.2), (11..13, -1.3)] {

@@ -1,6 +1,6 @@
 //! Locates the meshes that a robot's file names.
 
-use crate::visible::visible;
+use crate::report::visible::visible;
 use std::ffi::OsString;
 use std::fmt;
 use std::path::{Component, Path, PathBuf};

@@ -3,10 +3,10 @@
 
 use super::read::placed_form;
 use super::shape::Form;
-use crate::context::Context;
-use crate::dialect::Dialect;
-use crate::element::Element;
-use crate::finding::{Finding, Findings};
+use crate::report::finding::{Finding, Findings};
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::element::Element;
 use mozzi::SpatialInertia;
 
 /// The moments of a uniform solid may differ by this factor from the given ones, in order of size.

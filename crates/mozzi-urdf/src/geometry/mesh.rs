@@ -1,9 +1,9 @@
 //! Checks that a file is a mesh. A page embeds nothing else, whatever the file's name.
 
-use crate::bytes;
-use crate::dialect::Dialect;
-use crate::source::Source;
-use crate::syntax;
+use crate::text::bytes;
+use crate::text::dialect::Dialect;
+use crate::text::source::Source;
+use crate::text::syntax;
 
 /// The words that an OBJ's lines may begin with (Wavefront's specification, version 3.0).
 const WORDS: &str = "v vt vn vp deg bmat step cstype p l f curv curv2 surf parm trim hole scrv sp end con g s mg o \

@@ -16,16 +16,17 @@ pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
 
 use crate::XacroArguments;
-use crate::context::Context;
-use crate::diagnostic::Diagnostic;
-use crate::dialect::Dialect;
-use crate::error::LoadError;
-use crate::expansion;
-use crate::finding::Findings;
-use crate::pages::Pages;
-use crate::source::Source;
-use crate::version::Version;
-use crate::{bytes, embedded, file_bytes, folder_of, mjcf, syntax};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::error::LoadError;
+use crate::report::finding::Findings;
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::expansion;
+use crate::text::pages::Pages;
+use crate::text::source::Source;
+use crate::text::{bytes, syntax};
+use crate::urdf::version::Version;
+use crate::{embedded, file_bytes, folder_of, mjcf};
 use mozzi::SE3;
 use std::path::Path;
 

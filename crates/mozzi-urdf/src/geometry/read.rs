@@ -1,11 +1,11 @@
 //! `<visual>`, `<collision>`, `<geometry>`, `<material>`.
 
 use super::shape::{Form, Purpose, Shape};
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::origin;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::origin;
+use crate::urdf::vocabulary::shown;
 use mozzi::SE3;
 use std::collections::BTreeMap;
 

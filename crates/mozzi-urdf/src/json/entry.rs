@@ -2,8 +2,8 @@
 
 use super::file::{File, Misplaced, Step, unknown_key};
 use crate::constraints::Entry;
-use crate::spelling::did_you_mean;
-use crate::vocabulary::list;
+use crate::report::spelling::did_you_mean;
+use crate::urdf::vocabulary::list;
 use mozzi::SE3;
 use serde_json::Value;
 use std::fmt::Display;

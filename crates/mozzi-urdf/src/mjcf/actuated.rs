@@ -1,14 +1,13 @@
 //! The forces of MJCF's actuators and of gravity compensation on a simulated robot.
 
 use super::actuator::{Actuation, Actuator};
+use mozzi::dynamics::gravity_forces;
 use mozzi::nalgebra::{Cholesky, DVector, Dyn};
-use mozzi::simulation::Input;
-use mozzi::{Error, Model, Scalar, SpatialInertia, Workspace, gravity_forces};
+use mozzi::{Error, Model, Scalar, SpatialInertia, Workspace};
 use std::cell::OnceCell;
 use std::ops::Range;
 
-/// An input of a simulation: the actuators of a file with constant controls, and its gravity compensation, as MuJoCo
-/// computes them. The forces of a joint's actuators together are clamped to its effort limit (`actuatorfrcrange`).
+/// The actuators of a file with constant controls, and its gravity compensation, as MuJoCo computes them. The forces of a joint's actuators together are clamped to its effort limit (`actuatorfrcrange`).
 pub struct Actuated {
     drives: Vec<Drive>,
     /// Largest |τ| of each velocity.
@@ -61,6 +60,32 @@ impl Actuated {
     pub fn acts(&self) -> bool {
         let acts = |drive: &Drive| drive.control != 0.0 || drive.bias != [0.0; 3];
         self.compensated.is_some() || self.drives.iter().any(acts)
+    }
+
+    /// Adds their forces at a state to τ.
+    pub fn add_forces(&mut self, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) {
+        self.own.fill(0.0);
+        for drive in &self.drives {
+            let force = drive.force(theta, dtheta);
+            drive.terms.iter().for_each(|(_, v, gear)| self.own[*v] += gear * force);
+        }
+        self.own.iter_mut().zip(&self.limits).for_each(|(own, limit)| *own = own.max(-limit).min(*limit));
+        tau.iter_mut().zip(&self.own).for_each(|(sum, own)| *sum += own);
+        if let Some((model, workspace)) = &mut self.compensated {
+            gravity_forces(model, theta, model.gravity(), workspace, &mut self.own);
+            tau.iter_mut().zip(&self.own).for_each(|(sum, own)| *sum += own);
+        }
+    }
+
+    /// Adds −∂τ_j/∂θ_j and −∂τ_j/∂θ̇_j, as `mozzi_sim::Input::gains`.
+    pub fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        for drive in &self.drives {
+            let [_, by_length, by_rate] = drive.coefficients();
+            for (_, v, gear) in &drive.terms {
+                stiffness[*v] += (-gear * gear * by_length).max(0.0);
+                damping[*v] += (-gear * gear * by_rate).max(0.0);
+            }
+        }
     }
 }
 
@@ -122,32 +147,5 @@ impl Drive {
         let dl = self.terms.iter().map(|(_, v, gear)| gear * dtheta[*v]).sum::<f64>();
         let [c, by_length, by_rate] = self.coefficients();
         (c + by_length * l + by_rate * dl).max(self.range[0]).min(self.range[1])
-    }
-}
-
-impl Input for Actuated {
-    fn torque(&mut self, _: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
-        self.own.fill(0.0);
-        for drive in &self.drives {
-            let force = drive.force(theta, dtheta);
-            drive.terms.iter().for_each(|(_, v, gear)| self.own[*v] += gear * force);
-        }
-        self.own.iter_mut().zip(&self.limits).for_each(|(own, limit)| *own = own.max(-limit).min(*limit));
-        tau.iter_mut().zip(&self.own).for_each(|(sum, own)| *sum += own);
-        if let Some((model, workspace)) = &mut self.compensated {
-            gravity_forces(model, theta, model.gravity(), workspace, &mut self.own);
-            tau.iter_mut().zip(&self.own).for_each(|(sum, own)| *sum += own);
-        }
-        Ok(())
-    }
-
-    fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
-        for drive in &self.drives {
-            let [_, by_length, by_rate] = drive.coefficients();
-            for (_, v, gear) in &drive.terms {
-                stiffness[*v] += (-gear * gear * by_length).max(0.0);
-                damping[*v] += (-gear * gear * by_rate).max(0.0);
-            }
-        }
     }
 }

@@ -3,15 +3,16 @@
 
 use super::attributes::Item;
 use super::{Model, Wanted, is_mjcf, read_pages};
-use crate::context::Context;
-use crate::dialect::Dialect;
-use crate::element::Element;
-use crate::error::LoadError;
-use crate::finding::Findings;
-use crate::number::all_numbers;
-use crate::source::Source;
-use crate::vocabulary::shown;
-use crate::{XacroArguments, bytes, file_bytes, syntax};
+use crate::report::error::LoadError;
+use crate::report::finding::Findings;
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::element::Element;
+use crate::text::number::all_numbers;
+use crate::text::source::Source;
+use crate::text::{bytes, syntax};
+use crate::urdf::vocabulary::shown;
+use crate::{XacroArguments, file_bytes};
 use mozzi::model::description::JointKind;
 use std::collections::BTreeMap;
 use std::path::Path;

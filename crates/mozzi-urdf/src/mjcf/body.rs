@@ -8,11 +8,11 @@ use super::geom::Mass;
 use super::orientation::{pose, to_z, unit};
 use super::tree::{Link, Name, Site};
 use super::{attributes::Item, vocabulary};
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::places::Place;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::report::places::Place;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use mozzi::{SE3, SpatialInertia, Vec3};
 
 /// A parent body.

@@ -4,11 +4,11 @@ use super::attributes::Item;
 use super::law::{self, Law};
 use super::shapes::LOOKS;
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::{Element, Value};
-use crate::finding::Finding;
-use crate::spelling::did_you_mean;
-use crate::vocabulary::{Vocabulary, shown};
+use crate::report::finding::Finding;
+use crate::report::spelling::did_you_mean;
+use crate::text::context::Context;
+use crate::text::element::{Element, Value};
+use crate::urdf::vocabulary::{Vocabulary, shown};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 

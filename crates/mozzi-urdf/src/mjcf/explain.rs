@@ -1,6 +1,6 @@
 //! The meaning and remedy of the codes specific to MJCF.
 
-use crate::explain::Entry;
+use crate::report::explain::Entry;
 
 #[rustfmt::skip] // code, meaning, remedy
 pub(crate) const CODES: [Entry; 43] = [

@@ -1,14 +1,14 @@
 //! `<include>`: files whose content replaces the `<include>` that names them.
 
 use super::Files;
-use crate::bytes::{self, MOST_BYTES};
-use crate::context::Context;
-use crate::dialect::Dialect;
 use crate::files;
-use crate::finding::{Finding, Findings};
-use crate::source::Source;
-use crate::syntax;
-use crate::vocabulary::shown;
+use crate::report::finding::{Finding, Findings};
+use crate::text::bytes::{self, MOST_BYTES};
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::source::Source;
+use crate::text::syntax;
+use crate::urdf::vocabulary::shown;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::ops::Range;

@@ -3,12 +3,12 @@
 use super::coordinates::{Coordinates, Slot};
 use super::tree::{Name, Names};
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::{Element, Value};
-use crate::finding::Finding;
-use crate::number::all_numbers;
-use crate::places::{Place, Places};
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::report::places::{Place, Places};
+use crate::text::context::Context;
+use crate::text::element::{Element, Value};
+use crate::text::number::all_numbers;
+use crate::urdf::vocabulary::shown;
 use mozzi::Description;
 use std::collections::BTreeSet;
 

@@ -1,10 +1,10 @@
 //! The force of an actuator: (g₀ + g₁l + g₂l̇)u + b₀ + b₁l + b₂l̇, with the length l of its transmission and its
 //! control u. Every kind of actuator is a shortcut for the parameters g and b of `<general>`, also in a default class.
 
-use crate::context::Context;
-use crate::element::Element;
-use crate::number::{NotNumbers, up_to};
-use crate::vocabulary::{NOTHING, Vocabulary};
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::text::number::{NotNumbers, up_to};
+use crate::urdf::vocabulary::{NOTHING, Vocabulary};
 
 /// MuJoCo's number of parameters.
 const COUNT: usize = 10;

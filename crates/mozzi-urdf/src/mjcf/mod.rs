@@ -75,15 +75,15 @@ pub use explain::codes;
 pub(crate) use orientation::quaternion;
 
 use crate::XacroArguments;
-use crate::context::Context;
-use crate::dialect::Dialect;
-use crate::element::Element;
-use crate::finding::{Finding, Findings};
 use crate::geometry::Shape;
-use crate::pages::Pages;
-use crate::places::Places;
-use crate::source::Source;
-use crate::syntax;
+use crate::report::finding::{Finding, Findings};
+use crate::report::places::Places;
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::element::Element;
+use crate::text::pages::Pages;
+use crate::text::source::Source;
+use crate::text::syntax;
 use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
@@ -175,7 +175,7 @@ fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut 
 fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     if root.name() != "mujoco" {
         let message =
-            format!("the root element is <{}>, expected <mujoco>", crate::vocabulary::shown(root.written_name()));
+            format!("the root element is <{}>, expected <mujoco>", crate::urdf::vocabulary::shown(root.written_name()));
         let help = "<mujocoinclude> is a part of a model: open the file that includes it";
         cx.findings.add(Finding::error("wrong_root", root.span(), message).help(help));
         return None;

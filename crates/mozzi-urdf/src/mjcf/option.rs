@@ -3,8 +3,8 @@
 use super::attributes::Item;
 use super::ignored::Ignored;
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::Element;
+use crate::text::context::Context;
+use crate::text::element::Element;
 
 /// The options that mozzi uses.
 pub(crate) struct Options {

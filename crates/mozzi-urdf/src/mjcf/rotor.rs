@@ -7,12 +7,12 @@ use super::class::{Class, MOST_SUGGESTED};
 use super::law;
 use super::tree::{Name, Rotor};
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::places::Place;
-use crate::spelling::did_you_mean;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::report::places::Place;
+use crate::report::spelling::did_you_mean;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use mozzi::model::description::Gear;
 use std::collections::BTreeMap;
 

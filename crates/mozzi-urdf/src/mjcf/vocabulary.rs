@@ -1,6 +1,6 @@
 //! The words of MJCF.
 
-use crate::vocabulary::{NOTHING, Vocabulary};
+use crate::urdf::vocabulary::{NOTHING, Vocabulary};
 
 pub(crate) const MUJOCO: Vocabulary = Vocabulary {
     attributes: &["model"],

@@ -7,10 +7,10 @@ mod output;
 mod page;
 
 use crate::columns::save;
-use crate::commands::convert::edits;
+use crate::edits;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{array, number};
-use crate::robot::RobotArguments;
+use crate::robot::FileArguments;
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use log_file::read_log;
@@ -23,7 +23,7 @@ use output::Out;
 #[derive(Args, Debug)]
 pub struct IdentifyArguments {
     #[command(flatten)]
-    robot: RobotArguments,
+    robot: FileArguments,
     /// Logs: .csv with columns t, theta_JOINT, dtheta_JOINT, tau_JOINT (q1, qd1, effort_JOINT, … are understood, too),
     /// .npz, .npy, .arrow; JointState messages of .mcap, .db3 or a folder of rosbag2
     #[arg(value_name = "LOG", required = true)]
@@ -131,7 +131,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
-    let locks = edits::locks(&arguments.lock)?;
+    let locks = edits::locks(&arguments.lock, &whole)?;
     let model = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks)? };
     let options = arguments.options(&model)?;
     let mut logs = Vec::new();
