@@ -172,6 +172,10 @@ fn contradictory_flags_are_refused() {
         assert!(code == 1 && (said.contains(expected) || flags[0] == "--known-payload"), "{flags:?}: {said}");
         assert!(!said.contains("'-- -1'"), "{said}");
     }
+    let still = ARM.replace("lower=\"-2\" upper=\"2\"", "lower=\"0\" upper=\"0\"");
+    let still = file(&folder("flags_still"), "still.urdf", &still);
+    let said = String::from_utf8(common::mozzi(&["excite", &still, "--duration", "2"]).stderr).expect("text");
+    assert!(said.contains("joint `hinge` has a range of 0 and does not move"), "{said}");
     let (_, said) = complaint(&["excite", &arm, "--within", "rod=0,0,0,1,-1,1"]);
     assert!(said.contains("--within rod goes from 0 to -1 in y"), "{said}");
 }
@@ -228,4 +232,17 @@ fn pages_contain_nothing_of_this_machine_unless_it_is_allowed() {
     text(&["view", &beside, "--out", &page]);
     file(&elsewhere, "package.xml", "<package><name>elsewhere</name></package>");
     text(&["view", &yaml, "--out", &page]);
+}
+
+#[test]
+fn many_rows_of_constraints_are_announced_with_their_cost() {
+    let folder = folder("rows");
+    let arm = file(&folder, "arm.urdf", ARM);
+    let weld =
+        |k: usize| format!(r#"{{"name": "w{k}", "kind": "weld", "a": {{"frame": null}}, "b": {{"frame": "rod"}}}}"#);
+    let welds = (0..40).map(weld).collect::<Vec<_>>().join(", ");
+    let welds = file(&folder, "welds.json", &format!("{{\"constraints\": [{welds}]}}"));
+    let output = common::mozzi(&["simulate", &arm, "--constraints", &welds, "--time", "0.001"]);
+    let said = String::from_utf8(output.stderr).expect("text");
+    assert!(said.contains("the robot has 240 rows of constraints: a step takes about 1.4e-2 s"), "{said}");
 }

@@ -15,8 +15,8 @@ pub(super) fn lock<'a>(joint: Tag<'a>, origin: SE3, editor: &mut Editor<'a>) {
     place(joint, origin, editor);
 }
 
-/// Rewrites the attributes of `<dynamics>` that differ. The rotor of a transmission is a part of a joint's armature that
-/// stays where it is.
+/// Rewrites the attributes of `<dynamics>` that differ. The rotor of a transmission is a part of a joint's armature
+/// that stays where it is.
 ///
 /// # Errors
 /// The reason, if that part is larger than the new armature.
