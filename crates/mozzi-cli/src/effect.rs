@@ -21,7 +21,7 @@ const NEEDS: [Need; 9] = [
     need("simulate", &["contact", "contact-friction", "restitution"], &["ground", "contacts"]),
     need("simulate", &["tolerance"], &["method dopri"]),
     need("simulate", &["extrapolate"], &["torque", "follow", "tip-wrench"]),
-    need("simulate", &["meshes", "mesh-root", "page-rows"], &["report"]),
+    need("simulate", &["meshes", "mesh-root", "page-rows", "allow-host"], &["report"]),
 ];
 
 const fn need(command: &'static str, flags: &'static [&'static str], one_of: &'static [&'static str]) -> Need {

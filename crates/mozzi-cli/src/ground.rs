@@ -34,6 +34,9 @@ pub struct GroundArguments {
     contacts: Option<String>,
 }
 
+/// More contact points are announced with their cost.
+const MANY: usize = 1000;
+
 impl GroundArguments {
     /// The contacts; none without the flags.
     pub fn contacts(&self, robot: &RobotArguments, model: &Model) -> Result<Contacts<'static>> {
@@ -62,11 +65,13 @@ impl GroundArguments {
             found.points = self.points(robot, model, &shapes.shapes, (mu, restitution))?;
         }
         let (count, planes) = (found.points.len(), found.planes.len());
-        failure::note(&format!(
-            "{}: {count} contact points, {planes} plane{}",
-            self.flag(),
-            if planes == 1 { "" } else { "s" }
-        ));
+        let number = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        let (points, planes) = (number(count, "contact point"), number(planes, "plane"));
+        let cost = match count > MANY {
+            true => "; each costs time at every step, --contact FRAME takes fewer",
+            false => "",
+        };
+        failure::note(&format!("{}: {points}, {planes}{cost}", self.flag()));
         Ok(found)
     }
 

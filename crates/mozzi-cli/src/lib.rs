@@ -156,6 +156,8 @@ Examples:
   mozzi simulate ur5 --controller computed-torque --response 0.1
                                          motors hold the arm where it starts
   mozzi simulate double_pendulum --q 1.5,0 --time 5 --out swing.csv
+  mozzi view my_robot.urdf --out arm.html
+                                         the robot as one HTML file
   mozzi view double_pendulum swing.csv   a motion in the browser
   mozzi play my_robot.urdf               drag, simulate, edit, read everything
   mozzi convert my_robot.urdf my_robot.json

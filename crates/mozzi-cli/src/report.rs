@@ -4,13 +4,14 @@ use crate::columns::save;
 use crate::failure::{self, Failure, Result};
 use crate::input;
 use crate::robot::RobotArguments;
+use crate::robot_json;
 use crate::tables::read as table_file;
 use clap::{Args, ValueEnum};
 use mozzi::{Model, Wrench};
 use mozzi_report::{Drawing, Meshes, Motion, Touches};
 use mozzi_sim::Trajectory;
 use mozzi_sim::{ContactEvent, Contacts, Input};
-use mozzi_urdf::expanded;
+use mozzi_urdf::{embedded, expanded, taken_from_host};
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -31,6 +32,10 @@ pub struct MeshArguments {
     /// page, too
     #[arg(long, value_name = "FOLDER")]
     mesh_root: Option<PathBuf>,
+    /// Allow a page of a xacro file that reads variables of the environment, or files outside of its folder and of
+    /// packages: their contents may be in the page
+    #[arg(long)]
+    allow_host: bool,
 }
 
 #[derive(Args, Debug)]
@@ -75,6 +80,21 @@ enum Which {
 }
 
 impl MeshArguments {
+    /// A page may be passed on: it must not contain what the robot's file takes from this machine.
+    fn check_host(&self, robot: &RobotArguments) -> Result<()> {
+        let name = robot.model.as_str();
+        if self.allow_host || robot_json::is_json(name) || embedded::unless_file(name).is_some() {
+            return Ok(());
+        }
+        let taken = taken_from_host(input::name(name), input::robot_file(name)?, robot.settings())?;
+        let Some(first) = taken.first() else { return Ok(()) };
+        let more = if taken.len() > 1 { format!(" and {} more", taken.len() - 1) } else { String::new() };
+        Err(Failure::wrong(format!(
+            "{} reads {first}{more}, which may then be in the page; --allow-host allows it",
+            input::name(name)
+        )))
+    }
+
     /// The shapes of a robot with these meshes; prints what is omitted.
     pub fn drawing(&self, robot: &RobotArguments) -> Result<Drawing> {
         let name_or_path = robot.model.as_str();
@@ -86,6 +106,7 @@ impl MeshArguments {
         if let Some(folder) = self.mesh_root.as_deref().filter(|folder| !folder.is_dir()) {
             return Err(Failure::wrong(format!("--mesh-root is `{}`, expected a folder", folder.display())));
         }
+        self.check_host(robot)?;
         let drawing = if name_or_path == "-" {
             let text = input::robot_text().map_err(|error| input::cannot(name_or_path, &error))?;
             let expansion = expanded(input::name(name_or_path), text, robot.settings())?;

@@ -30,7 +30,11 @@ const MATRIX: f64 = 1e9;
 /// Multiplications per second, to estimate the time of a factorization.
 const RATE: f64 = 1e9;
 
-/// Refuses a robot whose matrices n × n are too large, and announces one whose factorizations take long.
+/// A step of a robot with constraints is announced if solving for them takes this long, s.
+const LONG_STEP: f64 = 1e-3;
+
+/// Refuses a robot whose matrices n × n are too large, and announces one whose factorizations, or constraints, take
+/// long.
 pub fn matrices(model: &Model) -> Result<()> {
     let n = model.n() as f64;
     let (bytes, seconds) = (BINARY * n * n, n * n * n / 6.0 / RATE);
@@ -44,6 +48,11 @@ pub fn matrices(model: &Model) -> Result<()> {
     }
     if seconds > 1.0 {
         failure::note(&format!("the robot has {n} velocities: a factorization of M takes about {seconds:.0} s"));
+    }
+    let rows = model.constraint_rows() as f64;
+    let seconds = rows * rows * (rows + n) / RATE;
+    if seconds > LONG_STEP {
+        failure::note(&format!("the robot has {rows} rows of constraints: a step takes about {seconds:.1e} s"));
     }
     Ok(())
 }

@@ -172,6 +172,10 @@ fn contradictory_flags_are_refused() {
         assert!(code == 1 && (said.contains(expected) || flags[0] == "--known-payload"), "{flags:?}: {said}");
         assert!(!said.contains("'-- -1'"), "{said}");
     }
+    let still = ARM.replace("lower=\"-2\" upper=\"2\"", "lower=\"0\" upper=\"0\"");
+    let still = file(&folder("flags_still"), "still.urdf", &still);
+    let said = String::from_utf8(common::mozzi(&["excite", &still, "--duration", "2"]).stderr).expect("text");
+    assert!(said.contains("joint `hinge` has a range of 0 and does not move"), "{said}");
     let (_, said) = complaint(&["excite", &arm, "--within", "rod=0,0,0,1,-1,1"]);
     assert!(said.contains("--within rod goes from 0 to -1 in y"), "{said}");
 }
@@ -193,4 +197,52 @@ fn a_robot_whose_matrices_do_not_fit_is_refused_before_the_work() {
             "{said}"
         );
     }
+}
+
+#[test]
+fn pages_contain_nothing_of_this_machine_unless_it_is_allowed() {
+    let (folder, elsewhere) = (folder("host"), folder("host_elsewhere"));
+    let secret = file(&elsewhere, "secret.yaml", "length: 0.25\n");
+    let page = folder.join("page.html").to_str().expect("text").to_string();
+    let robot = |name: &str, inside: &str| {
+        let start = r#"<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>"#;
+        file(&folder, name, &format!("{start}{inside}</robot>"))
+    };
+    let variable = robot(
+        "env.urdf.xacro",
+        r#"<link name="$(env HOME)"/><joint name="j" type="fixed"><parent link="a"/><child link="$(env HOME)"/></joint>"#,
+    );
+    let yaml = format!(
+        r#"<xacro:property name="p" value="${{xacro.load_yaml('{secret}')}}"/><material name="m${{p['length']}}"/>"#
+    );
+    let yaml = robot("yaml.urdf.xacro", &yaml);
+    for (robot, expected) in [(&variable, "the environment variable `HOME`"), (&yaml, "secret.yaml")] {
+        for command in ["view", "play"] {
+            let (code, said) = complaint(&[command, robot, "--out", &page]);
+            assert!(code == 1 && said.contains(expected) && said.contains("--allow-host allows it"), "{said}");
+        }
+    }
+    text(&["view", &yaml, "--out", &page, "--allow-host"]);
+    // files of the robot's own folder, and of packages
+    let beside = robot(
+        "beside.urdf.xacro",
+        r#"<xacro:property name="p" value="${xacro.load_yaml('own.yaml')}"/><material name="m${p['length']}"/>"#,
+    );
+    file(&folder, "own.yaml", "length: 0.25\n");
+    text(&["view", &beside, "--out", &page]);
+    file(&elsewhere, "package.xml", "<package><name>elsewhere</name></package>");
+    text(&["view", &yaml, "--out", &page]);
+}
+
+#[test]
+fn many_rows_of_constraints_are_announced_with_their_cost() {
+    let folder = folder("rows");
+    let arm = file(&folder, "arm.urdf", ARM);
+    let weld =
+        |k: usize| format!(r#"{{"name": "w{k}", "kind": "weld", "a": {{"frame": null}}, "b": {{"frame": "rod"}}}}"#);
+    let welds = (0..40).map(weld).collect::<Vec<_>>().join(", ");
+    let welds = file(&folder, "welds.json", &format!("{{\"constraints\": [{welds}]}}"));
+    let output = common::mozzi(&["simulate", &arm, "--constraints", &welds, "--time", "0.001"]);
+    let said = String::from_utf8(output.stderr).expect("text");
+    assert!(said.contains("the robot has 240 rows of constraints: a step takes about 1.4e-2 s"), "{said}");
 }

@@ -6,12 +6,14 @@ use mozzi::{Model, SE3};
 use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry_with, locate, parse};
 use mozzi_urdf::{LoadError, XacroArguments, files, visible};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::path::Path;
 
 /// A larger file is left out.
 const MOST_BYTES: u64 = 64 << 20;
+/// When all meshes of a page together have more bytes, the rest is omitted.
+const MOST_OF_ALL: u64 = 256 << 20;
 
 /// The formats that the page reads, by the files' endings.
 const FORMATS: [&str; 3] = ["stl", "obj", "dae"];
@@ -36,6 +38,10 @@ pub struct Drawing {
     meshes: Vec<Mesh>,
     /// Omitted shapes and the reasons, a sentence each.
     pub notes: Vec<String>,
+    /// Addresses of meshes, and whether they were read: each once.
+    tried: BTreeMap<String, bool>,
+    /// Bytes of the meshes' files.
+    bytes: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -96,18 +102,22 @@ impl Drawing {
     /// Reads the mesh of a form, if it has one; returns false, with a note, if that fails.
     fn has_mesh(&mut self, form: &Form, robot_file: &Path, root: Option<&Path>) -> bool {
         let Form::Mesh { file, .. } = form else { return true };
-        if self.meshes.iter().any(|mesh| mesh.address == *file) {
-            return true;
+        if let Some(is_read) = self.tried.get(file) {
+            return *is_read;
         }
-        match read(robot_file, file, root) {
-            Ok((format, gzip)) => {
+        let read = match self.bytes > MOST_OF_ALL {
+            true => Err(format!("mesh {}: all meshes together have more than {MOST_OF_ALL} bytes", visible(file))),
+            false => read(robot_file, file, root),
+        };
+        self.tried.insert(file.clone(), read.is_ok());
+        match read {
+            Ok((format, gzip, bytes)) => {
+                self.bytes += bytes;
                 self.meshes.push(Mesh { address: file.clone(), format, gzip });
                 true
             }
             Err(why) => {
-                if !self.notes.contains(&why) {
-                    self.notes.push(why);
-                }
+                self.notes.push(why);
                 false
             }
         }
@@ -156,8 +166,8 @@ fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
     shapes.into_iter().filter(is_chosen).collect()
 }
 
-/// The format of a mesh and its gzipped file, or the reason why it is omitted.
-fn read(robot_file: &Path, address: &str, root: Option<&Path>) -> Result<(&'static str, Vec<u8>), String> {
+/// The format of a mesh, its gzipped file and the size of the file, or the reason why it is omitted.
+fn read(robot_file: &Path, address: &str, root: Option<&Path>) -> Result<(&'static str, Vec<u8>, u64), String> {
     let ending = Path::new(address).extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let Some(&format) = FORMATS.iter().find(|format| ending.as_deref() == Some(**format)) else {
         return Err(format!("mesh {}: is no .stl, .obj or .dae", visible(address)));
@@ -168,7 +178,7 @@ fn read(robot_file: &Path, address: &str, root: Option<&Path>) -> Result<(&'stat
     let bytes = files::read(&path, MOST_BYTES).map_err(cannot)?;
     check_mesh(format, &bytes).map_err(|why| format!("{place} is no mesh: {why}"))?;
     let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
-    gzip.write_all(&bytes).and_then(|()| gzip.finish()).map(|gzip| (format, gzip)).map_err(cannot)
+    gzip.write_all(&bytes).and_then(|()| gzip.finish()).map(|gzip| (format, gzip, bytes.len() as u64)).map_err(cannot)
 }
 
 /// The first three rows of a configuration's matrix.

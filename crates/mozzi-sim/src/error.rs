@@ -1,5 +1,6 @@
 //! Errors of simulations, with the numbers that caused them.
 
+use alloc::format;
 use alloc::string::String;
 use core::fmt;
 
@@ -88,6 +89,12 @@ impl From<mozzi::Error> for Error {
     }
 }
 
+/// A number with six digits.
+fn short(x: f64) -> String {
+    let x: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    if x == 0.0 || (1e-4..1e6).contains(&x.abs()) { format!("{x}") } else { format!("{x:e}") }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -104,8 +111,11 @@ impl fmt::Display for Error {
             ),
             Error::Diverged { quantity, joint, value, step, time, step_size } => write!(
                 f,
-                "the simulation diverged: {quantity} of joint `{joint}` is {value:e} in step {step}, at t = {time} s, with steps of \
-                 {step_size} s; a smaller step may help"
+                "the simulation diverged: {quantity} of joint `{joint}` is {} in step {step}, at t = {} s, with steps of {} s; \
+                 a smaller step may help",
+                short(*value),
+                short(*time),
+                short(*step_size)
             ),
             Error::Stalled { time, joint, cause } => {
                 write!(f, "the simulation does not advance at t = {time} s, because of joint `{joint}`: {cause}")

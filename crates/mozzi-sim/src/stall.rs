@@ -5,7 +5,8 @@
 //! > window / 10⁸ · t_f (adaptive: the whole motion would take 10⁸ steps),  window / 1000 · δt (steps of given length)
 //!
 //! the simulation would practically never end, and is stopped with an error. For adaptive steps around a velocity that
-//! changes its sign again and again, as under an input with sgn θ̇, the bound is 10⁶ steps instead of 10⁸.
+//! changes its sign again and again, as under an input with sgn θ̇, or whose damping alone makes the steps short, the
+//! bound is 10⁶ steps instead of 10⁸.
 
 use crate::Error;
 use crate::Options;
@@ -73,9 +74,11 @@ impl Stall {
         let (advance, steps) = (t - self.start, self.steps);
         (self.steps, self.start) = (0, t);
         let chatter = known.as_ref().and_then(|known| known.chatter());
-        if advance < self.least[0] || (advance < self.least[1] && chatter.is_some()) {
-            let j = chatter.or(known.and_then(|known| known.sensitive));
-            let cause = cause(chatter.is_some());
+        let is_slow = advance < self.least[1];
+        let damped = if is_slow && chatter.is_none() { damped(model, advance / steps as f64) } else { None };
+        if advance < self.least[0] || is_slow && (chatter.is_some() || damped.is_some()) {
+            let j = chatter.or(damped).or(known.and_then(|known| known.sensitive));
+            let cause = if damped.is_some() { DAMPED } else { cause(chatter.is_some()) };
             let cause = format!("{steps} steps advanced by {advance:e} s only; {cause}");
             return Err(Error::Stalled { time: t, joint: velocity(model, j), cause });
         }
@@ -97,11 +100,25 @@ pub(crate) fn velocity(model: &Model, j: Option<usize>) -> String {
     j.and_then(|j| model.velocity_names().nth(j)).unwrap_or_default().to_string()
 }
 
+/// The velocity whose damping asks for steps as short as h, of an explicit method: those are stable up to about
+/// h = 3 M/d.
+fn damped(model: &Model, h: f64) -> Option<usize> {
+    let M = model.mass_matrix(&model.start().theta).ok()?;
+    let rate = |j: usize| {
+        (mozzi::dynamics::joint_friction(model, j, 2.0) - mozzi::dynamics::joint_friction(model, j, 1.0)) / M[(j, j)]
+    };
+    let fastest = (0..model.n()).max_by(|&a, &b| rate(a).total_cmp(&rate(b)))?;
+    (rate(fastest) * h > 1.0).then_some(fastest)
+}
+
+const DAMPED: &str = "its damping stops it within less than a step, which makes the motion stiff; the methods `midpoint` \
+                      and `moreau` take longer steps";
+
 fn cause(chatters: bool) -> &'static str {
     if chatters {
         "its velocity changes its sign again and again; the input jumps there, as sgn does"
     } else {
-        "the motion is stiff, or its input jumps; a larger tolerance or a method of fixed steps may help"
+        "the motion is stiff, or its input jumps; a larger tolerance may help, or the methods `midpoint` and `moreau`"
     }
 }
 
@@ -121,6 +138,16 @@ mod tests {
         let bang = torque(|_, theta, dtheta, tau| tau[0] = -50.0 * (theta[0] + dtheta[0]).signum());
         let error = simulate(&pendulum(0.0, 0.0), &[0.5], &[0.0], bang, &options(1e-10, 5.0)).expect_err("sliding");
         assert!(matches!(&error, Error::Stalled { joint, .. } if joint == "pivot"), "{error}");
+    }
+
+    #[test]
+    fn stiff_damping_ends_with_the_methods_that_take_it() {
+        let begin = |damping: f64| simulate(&pendulum(damping, 0.0), &[0.5], &[0.0], crate::Zero, &options(1e-9, 1.0));
+        assert!(begin(1.0).is_ok());
+        let error = begin(1e8).expect_err("stiff");
+        assert!(matches!(&error, Error::Stalled { joint, .. } if joint == "pivot"), "{error}");
+        let said = error.to_string();
+        assert!(said.contains("its damping") && said.contains("`midpoint` and `moreau`"), "{said}");
     }
 
     #[test]

@@ -76,7 +76,7 @@ pub use report::pretty::Style;
 pub use report::spelling::did_you_mean;
 pub use report::visible::visible;
 pub use settings::{Policy, Settings};
-pub use text::expansion::expanded;
+pub use text::expansion::{expanded, taken_from_host};
 pub use urdf::expressible::expressible;
 pub use urdf::write::{NotUrdf, write};
 

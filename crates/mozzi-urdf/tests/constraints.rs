@@ -257,3 +257,49 @@ fn parallel_robots_close() {
         assert!(wrong.to_string().starts_with("robot.yaml:1:16: closed_loop[0][0] is `nowhere`"), "{wrong}");
     }
 }
+
+/// A crank with a follower, a rod on it, and a rod on the base whose tip meets that of the first.
+const FOLLOWER: &str = r#"<robot name="r"><link name="base"/><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+<joint name="mot_crank" type="continuous"><parent link="base"/><child link="a"/></joint>
+<joint name="mot_rod" type="continuous"><parent link="a"/><child link="b"/><mimic joint="mot_crank" multiplier="-2"/></joint>
+<joint name="free" type="continuous"><parent link="base"/><child link="c"/></joint>
+<joint name="hip" type="revolute"><parent link="c"/><child link="d"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>"#;
+
+#[test]
+fn the_variants_of_robot_yaml_are_read() {
+    let tree = mozzi_urdf::parse("r.urdf", FOLLOWER).unwrap().description;
+    let read = |text: &str| constraints::parse("robot.yaml", text, tree.clone());
+    for (kinds, expected) in
+        [("\ntype: ['6D']", "weld"), ("\ntype: [3D]", "point"), ("", "weld"), ("\ntype: [3d]", "point")]
+    {
+        let robot = read(&format!("closed_loop: [[b, d]]{kinds}")).unwrap();
+        assert_eq!(robot.constraints[0].kind_name(), expected, "{kinds}");
+    }
+    // a motor of a mimic joint drives the joint that it follows; a text is a part of the motors' names
+    for (motors, expected) in [
+        ("[mot_rod, free]", &["mot_crank", "free"][..]),
+        ("[mot_rod, mot_crank]", &["mot_crank"]),
+        ("mot", &["mot_crank"]),
+    ] {
+        let robot = read(&format!("closed_loop: []\ntype: []\nname_mot: {motors}")).unwrap();
+        assert_eq!(robot.motors.as_deref().unwrap(), expected, "{motors}");
+    }
+    let robot = read("closed_loop: [[b, d]]\njoint_name: [hip, free]\njoint_type: [SPHERICAL, FIXED]").unwrap();
+    let kinds: Vec<&str> = robot.joints.iter().map(|joint| joint.kind.name()).collect();
+    assert_eq!((kinds[2], kinds[3], robot.joints[3].limits.position), ("fixed", "ball", None));
+    for (text, expected) in [
+        ("closed_loop: []\njoint_name: [hip]", "1:1: joint_type is null, expected one type for each of the 1 joints"),
+        ("closed_loop: []\njoint_name: [hop]\njoint_type: [FIXED]", "2:14: joint_name[0] is `hop`, expected a joint"),
+        (
+            "closed_loop: []\njoint_name: [hip]\njoint_type: [SCREW]",
+            "3:14: joint_type[0] is `SCREW`, expected SPHERICAL",
+        ),
+        ("closed_loop: [[b, d]]\ntype: [5d]", "2:8: type[0] is `5d`, expected `6d`"),
+        ("closed_loop: [[b, d]]\ntype: [6d, 6d]", "expected one type for each of the 1 pairs"),
+        ("closed_loop: [[b, d]]\ntyp: [6d]", "`typ` is not known"),
+    ] {
+        let said = read(text).unwrap_err().to_string();
+        assert!(said.contains(expected), "{text}: {said}");
+    }
+}

@@ -95,3 +95,23 @@ fn limits_that_are_all_zero_are_reported() {
         assert!(codes(&read(&text("", limit, ""))).is_empty(), "{limit}");
     }
 }
+
+#[test]
+fn an_edited_armature_leaves_the_rotor_where_it_is() {
+    let more = "<transmission name='t'><type>transmission_interface/SimpleTransmission</type><joint name='j'/>\
+                <actuator name='m'><mechanicalReduction>100</mechanicalReduction><motorInertia>5e-6</motorInertia>\
+                </actuator></transmission>";
+    let plain = text("", LIMIT, more);
+    let with_own = plain.replace(LIMIT, &format!("{LIMIT}<dynamics damping='1' armature='0.25'/>"));
+    for (before, own) in [(plain, 0.0), (with_own, 0.25)] {
+        let mut robot = read(&before).description;
+        assert!((robot.joints[0].armature - (own + 0.05)).abs() < 1e-15);
+        robot.joints[0].armature = 0.75;
+        let after = mozzi_urdf::edit("r.urdf", &before, &robot).unwrap();
+        assert!((read(&after).description.joints[0].armature - 0.75).abs() < 1e-15, "{after}");
+        assert!(after.contains("<motorInertia>5e-6</motorInertia>"), "{after}");
+        robot.joints[0].armature = 0.01;
+        let refused = mozzi_urdf::edit("r.urdf", &before, &robot).unwrap_err().to_string();
+        assert!(refused.contains("its transmission has a rotor of 0.0"), "{refused}");
+    }
+}

@@ -34,6 +34,8 @@ pub(crate) struct Expander<'a> {
     pub arguments: RefCell<HashMap<Rc<str>, Rc<str>>>,
     /// The names of arguments that the files declare or read.
     pub known_arguments: RefCell<BTreeSet<Rc<str>>>,
+    /// Variables of the environment that were read.
+    pub variables: RefCell<BTreeSet<String>>,
     pub expressions: RefCell<HashMap<Rc<str>, Rc<Node>>>,
     pub warnings: RefCell<Vec<Warning>>,
     /// The place that is being processed.

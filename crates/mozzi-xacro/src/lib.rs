@@ -124,6 +124,7 @@ fn expand_here(name: &str, text: &str, arguments: &Arguments) -> std::result::Re
         open: RefCell::new(vec![PathBuf::from(name)]),
         arguments: RefCell::new(given.collect()),
         known_arguments: RefCell::default(),
+        variables: RefCell::default(),
         expressions: RefCell::default(),
         warnings: RefCell::default(),
         place: RefCell::default(),
@@ -137,8 +138,11 @@ fn expand_here(name: &str, text: &str, arguments: &Arguments) -> std::result::Re
     let files = expander.files.take();
     let warnings = expander.warnings.take();
     let arguments = expander.known_values();
+    let variables = expander.variables.take().into_iter().collect();
     match result {
-        Ok((text, pieces)) => Ok(Expansion { text, files, warnings, arguments, work: expander.budget.work(), pieces }),
+        Ok((text, pieces)) => {
+            Ok(Expansion { text, files, warnings, arguments, variables, work: expander.budget.work(), pieces })
+        }
         Err(fault) => Err(Error::new(*fault, files, warnings)),
     }
 }

@@ -55,6 +55,8 @@ pub struct Expansion {
     pub warnings: Vec<Warning>,
     /// The arguments that the files declare or read, with their values, by name.
     pub arguments: Vec<(String, String)>,
+    /// The variables of the environment whose values were read.
+    pub variables: Vec<String>,
     /// Evaluation steps; the limit is two million.
     pub work: u64,
     pub(crate) pieces: Vec<Piece>,

@@ -56,6 +56,13 @@ impl Expander<'_> {
         Ok(resolved)
     }
 
+    /// A variable of the environment, which is noted.
+    fn variable(&self, name: &str) -> Option<String> {
+        let value = std::env::var(name).ok()?;
+        self.variables.borrow_mut().insert(name.to_string());
+        Some(value)
+    }
+
     fn command(&self, name: &str, words: &[&str]) -> Result<String> {
         let one = || match words {
             [word] => Ok(*word),
@@ -69,12 +76,12 @@ impl Expander<'_> {
             }
             "env" => {
                 let variable = one()?;
-                std::env::var(variable)
-                    .map_err(|_| Fault::new(format!("the environment variable `{variable}` is not set")))
+                self.variable(variable)
+                    .ok_or_else(|| Fault::new(format!("the environment variable `{variable}` is not set")))
             }
             "optenv" => match words {
                 [] => Err(Fault::new("`$(optenv …)` names no environment variable")),
-                [variable, default @ ..] => Ok(std::env::var(variable).unwrap_or_else(|_| default.join(" "))),
+                [variable, default @ ..] => Ok(self.variable(variable).unwrap_or_else(|| default.join(" "))),
             },
             "find" => self.find_package(one()?),
             _ => Err(Fault::new(

@@ -15,8 +15,27 @@ pub(super) fn lock<'a>(joint: Tag<'a>, origin: SE3, editor: &mut Editor<'a>) {
     place(joint, origin, editor);
 }
 
-/// Rewrites the attributes of `<dynamics>` that differ.
-pub(super) fn set_dynamics<'a>(tag: Tag<'a>, old: &Joint, new: &Joint, keeps_old: bool, editor: &mut Editor<'a>) {
+/// Rewrites the attributes of `<dynamics>` that differ. The rotor of a transmission is a part of a joint's armature
+/// that stays where it is.
+///
+/// # Errors
+/// The reason, if that part is larger than the new armature.
+pub(super) fn set_dynamics<'a>(
+    tag: Tag<'a>,
+    old: &Joint,
+    new: &Joint,
+    keeps_old: bool,
+    editor: &mut Editor<'a>,
+) -> Result<(), String> {
+    let own = tag.child("dynamics").and_then(|dynamics| numbers::<1>(dynamics.attribute("armature")?).ok());
+    let rotor = old.armature - own.map_or(0.0, |[own]| own);
+    let rotor = if is_near(&[rotor + old.armature], &[old.armature]) { 0.0 } else { rotor };
+    if new.armature != old.armature && new.armature < rotor {
+        let (name, armature) = (&old.name, new.armature);
+        return Err(format!(
+            "joint `{name}`: its transmission has a rotor of {rotor:?}, more than the whole, {armature:?}"
+        ));
+    }
     let of = |joint: &Joint| {
         [
             ("damping", joint.damping),
@@ -28,15 +47,18 @@ pub(super) fn set_dynamics<'a>(tag: Tag<'a>, old: &Joint, new: &Joint, keeps_old
     };
     let changed: Vec<_> = of(old).into_iter().zip(of(new)).filter(|(old, new)| old.1 != new.1).collect();
     if changed.is_empty() {
-        return;
+        return Ok(());
     }
+    let written = |name: &str, value: f64| if name == "armature" { value - rotor } else { value };
     match tag.child("dynamics") {
         Some(dynamics) => {
-            changed.iter().for_each(|(_, (name, value))| editor.set(dynamics, name, Some(&format!("{value:?}"))));
+            for (_, (name, value)) in &changed {
+                editor.set(dynamics, name, Some(&format!("{:?}", written(name, *value))));
+            }
         }
         None => {
-            let attributes: String =
-                changed.iter().map(|(_, (name, value))| format!(" {name}=\"{value:?}\"")).collect();
+            let attribute = |(_, (name, value)): &(_, (&str, f64))| format!(" {name}=\"{:?}\"", written(name, *value));
+            let attributes: String = changed.iter().map(attribute).collect();
             editor.insert_last(tag, &[format!("<dynamics{attributes}/>")]);
         }
     }
@@ -44,6 +66,7 @@ pub(super) fn set_dynamics<'a>(tag: Tag<'a>, old: &Joint, new: &Joint, keeps_old
         let values: Vec<String> = changed.iter().map(|((name, value), _)| format!("{name} {value:?}")).collect();
         editor.insert_first(tag, &format!("<!-- before: {} -->", values.join(", ")));
     }
+    Ok(())
 }
 
 /// Rewrites those attributes of `<origin>` that differ.

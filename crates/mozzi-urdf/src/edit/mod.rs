@@ -150,7 +150,7 @@ fn editor<'a>(
                 if new.kind != old.kind || new.origin != old.origin {
                     joint::lock(tag, new.origin, &mut editor);
                 }
-                joint::set_dynamics(tag, old, new, keeps_old, &mut editor);
+                reasons.extend(joint::set_dynamics(tag, old, new, keeps_old, &mut editor).err());
             }
             None => reasons.push(format!("joint `{}` is a part of a planar joint", old.name)),
         }

@@ -82,6 +82,22 @@ fn own_folders(robot_file: &Path) -> Vec<PathBuf> {
     folders.into_iter().chain(packages).collect()
 }
 
+/// The folders of a robot's own files.
+pub(crate) struct Own(Vec<PathBuf>);
+
+impl Own {
+    /// The folder of the robot's file, the package around it, and further folders.
+    pub fn of<'p>(robot_file: &Path, more: impl Iterator<Item = &'p Path>) -> Self {
+        Own(own_folders(robot_file).into_iter().chain(more.filter_map(|folder| folder.canonicalize().ok())).collect())
+    }
+
+    /// Whether a file is in one of them, or in any package.
+    pub fn has(&self, file: &Path) -> bool {
+        let Ok(file) = file.canonicalize() else { return true }; // a text that was given
+        self.0.iter().any(|own| file.starts_with(own)) || file.ancestors().skip(1).any(is_package)
+    }
+}
+
 fn is_package(folder: &Path) -> bool {
     folder.join("package.xml").is_file()
 }

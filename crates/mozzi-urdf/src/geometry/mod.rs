@@ -10,6 +10,7 @@ mod shape;
 mod vertices;
 
 pub use contact::{FRICTION, ShapeContacts, contact_points};
+pub(crate) use files::Own;
 pub use files::{NotLocated, locate};
 pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};

@@ -30,8 +30,8 @@
 //! # What is not read
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
 //!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed, shells.
-//! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids. Simulations
-//!   may add the forces of actuators and gravity compensation: [`Actuated`].
+//! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
+//!   Simulations may add the forces of actuators and gravity compensation: [`Actuated`].
 //! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without
 //!   moments, which is a point mass.
 //! - Counted ([`Loaded::unused`](crate::Loaded)), once per kind, with the codes `ignored_element` and

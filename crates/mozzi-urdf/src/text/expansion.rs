@@ -1,6 +1,7 @@
 //! Xacro files are expanded before they are read. Findings in the expansion are reported at their places in the xacro
 //! file.
 
+use crate::geometry::Own;
 use crate::report::diagnostic::Diagnostic;
 use crate::report::error::LoadError;
 use crate::report::finding::Finding;
@@ -12,6 +13,7 @@ use crate::text::source::{Source, Walker};
 use crate::text::{syntax, xacro};
 use mozzi_xacro::{Arguments, Error, Expansion, File, Origin, expand_text};
 use std::ops::Range;
+use std::path::Path;
 use std::sync::Arc;
 
 /// A source that the reader takes, and warnings of xacro.
@@ -63,6 +65,26 @@ pub fn expanded(
     let Ok(text) = to_text(text.as_ref()) else { return Ok(None) };
     let (source, _) = prepare(Source::new(file_name, text), &settings.into().xacro)?;
     Ok(source.expansion.map(|expansion| expansion.text.clone()))
+}
+
+/// What the expansion of a xacro text takes from this machine: variables of the environment, and files that lie neither
+/// next to the robot's file nor in a package (a folder with package.xml, or one that is given). A text that is passed
+/// on may contain them.
+///
+/// # Errors
+/// As [`expanded`].
+pub fn taken_from_host(
+    file_name: &str,
+    text: impl AsRef<[u8]>,
+    settings: impl Into<Settings>,
+) -> Result<Vec<String>, LoadError> {
+    let (Ok(text), settings) = (to_text(text.as_ref()), settings.into()) else { return Ok(Vec::new()) };
+    let Some(expansion) = of(file_name, text, &settings)? else { return Ok(Vec::new()) };
+    let variables = expansion.variables.iter().map(|name| format!("the environment variable `{name}`"));
+    let packages = settings.xacro.packages.iter().map(|(_, folder)| folder.as_path());
+    let own = Own::of(Path::new(file_name), packages);
+    let others = expansion.files.iter().skip(1).filter(|file| !own.has(Path::new(&*file.name)));
+    Ok(variables.chain(others.map(|file| format!("the file {}", file.name))).collect())
 }
 
 /// The expansion of a xacro text with its places; None for any other text.
