@@ -20,6 +20,7 @@ pub fn meant(words: Vec<OsString>, program: &Command) -> Result<Vec<OsString>, S
         begin.into_iter().chain(moved).chain(rest.map(|(_, word)| word.clone())).collect()
     };
     Ok(match (text(1), text(2)) {
+        (Some("version"), None) => vec![words[0].clone(), "--version".into()],
         (Some("compute"), Some(first)) if is_quantity(first) && text(3).is_some_and(is_robot) => {
             with("compute", &[3, 2])
         }
@@ -75,6 +76,7 @@ mod tests {
             ("mozzi compute ur5 M", "mozzi compute ur5 M"),
             ("mozzi --help", "mozzi --help"),
             ("mozzi nonsense ur5", "mozzi nonsense ur5"),
+            ("mozzi version", "mozzi --version"),
         ] {
             assert_eq!(of(line), expected);
         }

@@ -104,7 +104,12 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let model = arguments.robot.load_at(|model| positions("--from", arguments.from.as_deref(), model))?;
     let limits = arguments.limits(&model)?;
-    let motion = arguments.motion(&model, &limits)?;
+    let motion = arguments.motion(&model, &limits).map_err(|failure| match failure {
+        Failure::Wrong(sentence) if sentence.starts_with("nothing limits the speed") => {
+            Failure::wrong(format!("{sentence}; --time is a duration, --max-velocity a limit"))
+        }
+        other => other,
+    })?;
     let step = number("--step", &arguments.step)?;
     let count = motion.duration() / step;
     if !(step > 0.0) || count > MOST_ROWS {
