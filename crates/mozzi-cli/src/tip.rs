@@ -8,7 +8,8 @@ use mozzi_urdf::did_you_mean;
 use std::ffi::OsString;
 
 /// Flags of other programs, and what is meant.
-const MEANT: [(&str, &str); 18] = [
+const MEANT: [(&str, &str); 19] = [
+    ("friction", "--contact-friction is that of the ground; joints have the friction of their file"),
     ("robot", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
     ("model", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
     ("urdf", "the robot is a word without a flag: mozzi COMMAND ROBOT"),

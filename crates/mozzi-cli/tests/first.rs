@@ -343,3 +343,27 @@ fn check_takes_several_files() {
     let log: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!(output.status.code() == Some(1) && !log["runs"][0]["results"].as_array().expect("a list").is_empty());
 }
+
+#[test]
+fn findings_about_one_element_are_one_block() {
+    let folder = folder("first_blocks");
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><mass value='1'/>\n<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>\n\
+             </inertial></link>"
+        )
+    };
+    // two attributes of one element that URDF does not have, and one of another line
+    let text = format!(
+        "<robot name='a'>{}{}<joint name='j' type='revolute'>\n<limit lower='-1' upper='1' effort='1' velocity='1' gain='2' \
+         offset='3'/>\n<axis xyz='0 0 1' colour='red'/>\n<parent link='b'/><child link='c'/></joint></robot>",
+        link("b"),
+        link("c")
+    );
+    let robot = file(&folder, "robot.urdf", &text);
+    let said = String::from_utf8(mozzi(&["check", &robot]).stderr).expect("text");
+    assert!(said.contains("`gain`") && said.contains("also: ") && said.contains("`offset`"), "{said}");
+    assert_eq!(said.matches("warning").count() - said.matches("warnings").count(), 2, "{said}");
+    let lines = String::from_utf8(mozzi(&["check", &robot, "--json"]).stdout).expect("text");
+    assert_eq!(lines.lines().count(), 3, "{lines}");
+}

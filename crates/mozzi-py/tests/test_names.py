@@ -49,7 +49,7 @@ def test_load_takes_names_paths_files_and_json(tmp_path):
     (tmp_path / "broken.json").write_text('{"robot": 1')
     with pytest.raises(ValueError, match="broken.json"):
         mozzi.Model.load(tmp_path / "broken.json")
-    with pytest.raises(mozzi.LoadError, match="nothing_like_it"):
+    with pytest.raises(FileNotFoundError, match="nothing_like_it"):
         mozzi.Model.load("nothing_like_it")
 
 

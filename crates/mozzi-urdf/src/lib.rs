@@ -109,7 +109,7 @@ pub use expressible::expressible;
 pub use mozzi::model::Severity;
 pub use mozzi_xacro::Arguments as XacroArguments;
 #[cfg(feature = "pretty")]
-pub use pretty::Style;
+pub use pretty::{Style, pretty};
 pub use settings::{Policy, Settings};
 pub use spelling::did_you_mean;
 pub use visible::visible;

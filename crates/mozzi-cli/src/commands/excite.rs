@@ -66,6 +66,9 @@ pub struct ExciteArguments {
     /// Lock a joint at this position, rad or m
     #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
     lock: Vec<String>,
+    /// List all base parameters
+    #[arg(long)]
+    all: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -105,8 +108,11 @@ pub fn run(arguments: &ExciteArguments) -> Result<String> {
         }
         save(file, &text)?;
     }
-    let text =
-        if arguments.robot.json { object(&model, &found) } else { page(&model, &found, arguments.out.as_deref()) };
+    let text = if arguments.robot.json {
+        object(&model, &found)
+    } else {
+        page(&model, &found, arguments.out.as_deref(), arguments.all)
+    };
     if found.is_stopped { Err(Failure::Stopped(text)) } else { Ok(text) }
 }
 
@@ -196,7 +202,12 @@ fn rows(model: &Model, found: &Excitation, duration: f64, step: f64) -> Result<C
     Ok(columns)
 }
 
-fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
+/// Base parameters of a default page.
+const SHOWN: usize = 40;
+/// Longest name of one.
+const LONGEST: usize = 44;
+
+fn page(model: &Model, found: &Excitation, out: Option<&str>, is_long: bool) -> String {
     let mut page = Page::default();
     page.line(format!(
         "{}: a motion of {} s, {} harmonics",
@@ -215,12 +226,18 @@ fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
         found.parameters.len()
     ));
     let mut rows = vec![["", "value", "deviation"].map(str::to_string).to_vec()];
-    for (name, value, deviation) in &found.parameters {
+    let most = if is_long { usize::MAX } else { SHOWN };
+    for (name, value, deviation) in found.parameters.iter().take(most) {
+        let is_cut = name.chars().count() > LONGEST;
         let name: String =
-            if name.chars().count() > 60 { name.chars().take(57).chain("…".chars()).collect() } else { name.clone() };
+            if is_cut { name.chars().take(LONGEST - 1).chain("…".chars()).collect() } else { name.clone() };
         rows.push(vec![name, format!("{value:.4}"), format!("{deviation:.4}")]);
     }
     page.title("predicted confidence: base parameters of the robot's file").lines(&table(&rows, "lrr"));
+    page.line("  A base parameter is a sum of parameters that forces depend on, such as m c_x + l m'.");
+    if found.parameters.len() > most {
+        page.line(format!("  … {} more base parameters; --all shows them", found.parameters.len() - most));
+    }
     match out {
         Some(file) => {
             page.blank().line(format!("{file} is written; check the motion for collisions before you run it"));
