@@ -32,6 +32,19 @@ pub fn angles(place: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f64>> 
     entries(text).enumerate().map(entry).collect()
 }
 
+/// One number for all, or one for each, of which those that `are_angles` may be in degrees.
+pub fn one_or_each(flag: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f64>> {
+    let (count, n) = (entries(text).count(), are_angles.len());
+    if count == 1 {
+        let one = |&is_angle: &bool| if is_angle { angle(flag, text) } else { number(flag, text) };
+        return are_angles.iter().map(one).collect();
+    }
+    match count == n {
+        true => angles(flag, text, are_angles),
+        false => Err(wrong_count(flag, count, n, "one for each velocity, or one for all")),
+    }
+}
+
 /// What was written with a number.
 #[derive(Clone, Copy, PartialEq)]
 enum Unit {

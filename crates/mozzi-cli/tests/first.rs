@@ -128,6 +128,11 @@ fn angles_may_be_in_degrees() {
     assert_eq!(numbers(&json(&["compute", "ur5", "aba", "--deg", "--tau=90,0,0,0,0,0"])["tau"])[0], 90.0);
     let (_, said) = complaint(&["compute", "panda", "g", "--q=0,0,0,0,0,0,0,1deg"]);
     assert!(said.contains("entry 8 is `1deg`, which is no angle"), "{said}");
+    let way = |flags: &[&str]| json(&[&["trajectory", "ur5", "--to"][..], flags].concat())["t"].clone();
+    let by_degrees = way(&["90,0,0,0,0,0", "--max-velocity", "90", "--deg"]);
+    assert_eq!(by_degrees, way(&["90deg,0,0,0,0,0", "--max-velocity", "90deg"]));
+    let (_, said) = complaint(&["simulate", "ur5", "--deg", "--until", "elbow_joint > 90"]);
+    assert!(said.contains("conditions of --until and --report-event are in radians"), "{said}");
     // and printed so
     let page = text(&["info", "ur5", "--deg"]);
     assert!(page.contains("-360") && page.contains("units: deg, deg/s, N m"), "{page}");
