@@ -1,5 +1,6 @@
 //! `--until` and `--report-event`: conditions along a motion.
 
+use crate::angles;
 use crate::failure::{self, Failure, Result};
 use crate::text::scalar;
 use clap::Args;
@@ -25,6 +26,11 @@ impl EventArguments {
     /// For a motion from (θ, θ̇).
     pub fn events<'m>(&self, model: &'m Model, [theta, dtheta]: [&[f64]; 2]) -> Result<Vec<Event<'m>>> {
         let mut events = Vec::new();
+        if angles::are_degrees() && !(self.until.is_empty() && self.report_event.is_empty()) {
+            return Err(Failure::wrong(
+                "--deg: conditions of --until and --report-event are in radians, expected no --deg",
+            ));
+        }
         for (flag, list, stop) in [("--until", &self.until, true), ("--report-event", &self.report_event, false)] {
             for text in list {
                 let wrong = |error| Failure::wrong(format!("{flag} {error}"));

@@ -1,10 +1,10 @@
 //! `--controller`: one by its name, with gains by a time constant, or a JSON file with its gains and its own model of
 //! the robot.
 
-use crate::failure::{self, Failure, Result};
+use crate::failure::{Failure, Result};
 use crate::json_file;
 use crate::robot::RobotArguments;
-use mozzi::{FrameId, Model, SE3, Task, TaskFrame};
+use mozzi::{FrameId, Model, SE3, Task, TaskFrame, Vec3};
 use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, Standing, TaskSpace};
 use mozzi_motion::trajectories::Reference;
 use mozzi_sim::{ContactPoint, Contacts, Input, PlaneMotion};
@@ -47,8 +47,6 @@ const ALIASES: [(&str, &str); 4] = [
 
 /// Feet of `standing` are the contact points this near to the ground at the start, m.
 const STANDS: f64 = 2e-3;
-/// The quadratic program of `standing` takes at most so many.
-const FEET: usize = 32;
 
 impl Controller {
     pub fn read(name: &str, response: f64, robot: &RobotArguments) -> Result<Self> {
@@ -211,7 +209,7 @@ fn list(at: &At, count: usize) -> Result<Vec<f64>> {
     })
 }
 
-/// The contact points that are on the ground at the start, and the ground.
+/// The contact points that are on the ground at the start, of each link the four corners, and the ground.
 fn feet(model: &Model, contacts: &Contacts, theta: &[f64]) -> Result<(Vec<ContactPoint>, SE3)> {
     let needs = "--controller standing: the robot stands on no plane, expected --ground and a start on it";
     let Some(plane) = contacts.planes.first() else { return Err(Failure::wrong(needs)) };
@@ -219,14 +217,25 @@ fn feet(model: &Model, contacts: &Contacts, theta: &[f64]) -> Result<(Vec<Contac
         return Err(Failure::wrong("--controller standing: the first plane moves, expected a plane at rest"));
     };
     let gaps = contacts.gaps(model, 0.0, theta);
-    let near = |k: &usize| gaps.get(k * contacts.planes.len()).is_some_and(|gap| *gap < STANDS);
-    let standing: Vec<usize> = (0..contacts.points.len()).filter(near).collect();
-    if standing.is_empty() {
-        return Err(Failure::wrong(needs));
+    let gap = |k: usize| gaps.get(k * contacts.planes.len()).copied().unwrap_or(f64::INFINITY);
+    let mut standing: Vec<(FrameId, Vec<(Vec3, usize)>)> = Vec::new();
+    for (k, point) in contacts.points.iter().enumerate().filter(|&(k, _)| gap(k) < STANDS) {
+        let at = ground.inverse() * (model.forward_kinematics(theta, point.frame)? * point.center);
+        match standing.iter_mut().find(|(frame, _)| *frame == point.frame) {
+            Some((_, points)) => points.push((at, k)),
+            None => standing.push((point.frame, vec![(at, k)])),
+        }
     }
-    let step = standing.len().div_ceil(FEET);
-    if step > 1 {
-        failure::note(&format!("--controller standing: every {step}th of {} contact points is a foot", standing.len()));
+    let mut corners = Vec::new();
+    for (_, points) in &standing {
+        for [x, y] in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+            let along = |p: &Vec3| x * p.0[0] + y * p.0[1];
+            let corner = points.iter().max_by(|(a, _), (b, _)| along(a).total_cmp(&along(b))).map(|(_, k)| *k);
+            corners.extend(corner.filter(|k| !corners.contains(k)));
+        }
     }
-    Ok((standing.into_iter().step_by(step).map(|k| contacts.points[k].clone()).collect(), *ground))
+    match corners.is_empty() {
+        true => Err(Failure::wrong(needs)),
+        false => Ok((corners.into_iter().map(|k| contacts.points[k].clone()).collect(), *ground)),
+    }
 }

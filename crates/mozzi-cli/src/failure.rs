@@ -44,9 +44,9 @@ fn write_styled(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// A diagnostic with its place in the file, on standard error.
-pub fn say(diagnostic: &Diagnostic) {
-    write_styled(&diagnostic.pretty(style()));
+/// Diagnostics with their places in the file, on standard error; those about one element are one block.
+pub fn say<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) {
+    write_styled(&mozzi_urdf::pretty(diagnostics, style()));
 }
 
 /// Uses colours if standard error is a terminal and NO_COLOR is not set (see no-color.org).

@@ -20,6 +20,11 @@ pub fn meant(words: Vec<OsString>, program: &Command) -> Result<Vec<OsString>, S
         begin.into_iter().chain(moved).chain(rest.map(|(_, word)| word.clone())).collect()
     };
     Ok(match (text(1), text(2)) {
+        (Some("plot"), Some(robot)) if is_robot(robot) && text(3).is_some_and(|word| !is_command(word)) => {
+            let figure = [OsString::from("trajectory")];
+            words[..2].iter().cloned().chain(figure).chain(words[2..].iter().cloned()).collect()
+        }
+        (Some("version"), None) => vec![words[0].clone(), "--version".into()],
         (Some("compute"), Some(first)) if is_quantity(first) && text(3).is_some_and(is_robot) => {
             with("compute", &[3, 2])
         }
@@ -75,6 +80,8 @@ mod tests {
             ("mozzi compute ur5 M", "mozzi compute ur5 M"),
             ("mozzi --help", "mozzi --help"),
             ("mozzi nonsense ur5", "mozzi nonsense ur5"),
+            ("mozzi version", "mozzi --version"),
+            ("mozzi plot ur5 fall.csv --out a.svg", "mozzi plot trajectory ur5 fall.csv --out a.svg"),
         ] {
             assert_eq!(of(line), expected);
         }

@@ -75,6 +75,7 @@ fn help() -> String {
 }
 
 #[derive(Subcommand, Debug)]
+#[allow(clippy::large_enum_variant)] // there is one value
 enum Command {
     /// List the embedded robots, and the kinds of files
     #[command(aliases = ["robot", "models", "model", "list", "ls"])]

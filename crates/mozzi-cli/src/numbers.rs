@@ -29,7 +29,20 @@ pub fn angles(place: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f64>> 
         let place = format_args!("{place}: entry {}", k + 1);
         if are_angles.get(k) == Some(&false) { number(place, text) } else { angle(place, text) }
     };
-    if text.trim().is_empty() { Ok(Vec::new()) } else { text.split(',').enumerate().map(entry).collect() }
+    entries(text).enumerate().map(entry).collect()
+}
+
+/// One number for all, or one for each, of which those that `are_angles` may be in degrees.
+pub fn one_or_each(flag: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f64>> {
+    let (count, n) = (entries(text).count(), are_angles.len());
+    if count == 1 {
+        let one = |&is_angle: &bool| if is_angle { angle(flag, text) } else { number(flag, text) };
+        return are_angles.iter().map(one).collect();
+    }
+    match count == n {
+        true => angles(flag, text, are_angles),
+        false => Err(wrong_count(flag, count, n, "one for each velocity, or one for all")),
+    }
 }
 
 /// What was written with a number.
@@ -73,12 +86,19 @@ fn value(text: &str) -> Option<(f64, Unit)> {
     Some((factor * std::f64::consts::PI / under, Unit::Radians))
 }
 
-/// Finite numbers, separated by commas.
+/// Finite numbers, separated by commas or spaces.
 pub fn numbers(place: &str, text: &str) -> Result<Vec<f64>> {
-    if text.trim().is_empty() {
-        return Ok(Vec::new());
-    }
-    text.split(',').enumerate().map(|(k, entry)| number(format_args!("{place}: entry {}", k + 1), entry)).collect()
+    entries(text).enumerate().map(|(k, entry)| number(format_args!("{place}: entry {}", k + 1), entry)).collect()
+}
+
+/// The entries of a list: "1,2", "1 2", "[1, 2]" as Python prints it, "(1, 2)".
+fn entries(text: &str) -> impl Iterator<Item = &str> {
+    let text = text.trim();
+    let within = |open, close| text.strip_prefix(open).and_then(|text| text.strip_suffix(close));
+    let text = within('[', ']').or_else(|| within('(', ')')).unwrap_or(text).trim();
+    let has_commas = text.contains(',');
+    let is_end = move |c: char| if has_commas { c == ',' } else { c.is_whitespace() };
+    text.split(is_end).filter(move |entry| !text.is_empty() && (has_commas || !entry.is_empty()))
 }
 
 /// One number for each name.
@@ -118,7 +138,7 @@ pub const TWIST: [&str; 6] = ["ω_x", "ω_y", "ω_z", "v_x", "v_y", "v_z"];
 
 #[cfg(test)]
 mod tests {
-    use super::{angle, angles, number};
+    use super::{angle, angles, number, numbers};
     use std::f64::consts::PI;
 
     #[test]
@@ -139,6 +159,13 @@ mod tests {
         }
         for text in ["pie", "pi/0", "1/2", "deg", "inf", "2pi3", "--pi"] {
             assert!(read(text).is_none(), "{text}");
+        }
+        for text in ["0.5,-1", "0.5 -1", "[0.5, -1]", "(0.5, -1)", " [0.5  -1] "] {
+            assert_eq!(numbers("--theta", text).ok(), Some(vec![0.5, -1.0]), "{text}");
+        }
+        assert_eq!(numbers("--theta", " ").ok(), Some(Vec::new()));
+        for text in ["1,,2", "[1,2", "1;2", "1, 2 3"] {
+            assert!(numbers("--theta", text).is_err(), "{text}");
         }
         assert!(number("--step", "45deg").is_err() && angles("--theta", "45deg,45deg", &[true, false]).is_err());
     }

@@ -21,8 +21,15 @@ const ELSEWHERE: [(&str, &str); 8] = [
     ("all", "`mozzi terms MODEL` computes all quantities at one state"),
     ("screw", "`mozzi screws MODEL` shows the screw axes"),
     ("G", "`mozzi screws MODEL` shows the spatial inertias G_i"),
-    ("energy", "kinetic-energy and potential-energy are its parts"),
+    ("energy", "its parts: `mozzi compute MODEL kinetic-energy,potential-energy`"),
 ];
+
+/// What computes that which a word names, if it is no quantity.
+pub fn elsewhere(name: &str) -> Option<&'static str> {
+    let plain = name.replace('-', "_");
+    let is_meant = |known: &str| plain == known || known.len() > 3 && plain.starts_with(known);
+    ELSEWHERE.iter().find(|(known, _)| is_meant(known)).map(|(_, tip)| *tip)
+}
 
 /// The names of quantities; an unknown one is answered by the nearest, not by all.
 #[derive(Clone)]
@@ -39,10 +46,12 @@ impl TypedValueParser for Names {
     ) -> std::result::Result<Query<'static>, clap::Error> {
         let name = value.to_string_lossy();
         Query::named(&name).map_err(|error| {
-            let plain = name.replace('-', "_");
-            let is_meant = |known: &str| plain == known || known.len() > 3 && plain.starts_with(known);
-            let elsewhere = ELSEWHERE.iter().find(|(known, _)| is_meant(known));
-            let tip = elsewhere.map_or_else(String::new, |(_, tip)| format!("\n\n  tip: {tip}"));
+            if name.parse::<f64>().is_ok() {
+                let tip = format!("the numbers of a list are separated by commas: --theta 0.1,{name}");
+                let said = format!("there is no quantity `{name}`\n\n  tip: {tip}");
+                return command.clone().error(ErrorKind::InvalidValue, said);
+            }
+            let tip = elsewhere(&name).map_or_else(String::new, |tip| format!("\n\n  tip: {tip}"));
             let told = error.to_string().replace('_', "-");
             let list = "`mozzi compute --list` shows all; M, C, c, g, h, J_b, J_s, rnea, crba, aba, fk are known, too";
             command.clone().error(ErrorKind::InvalidValue, format!("{told}{tip}\n\n  tip: {list}"))

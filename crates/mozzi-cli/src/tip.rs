@@ -1,13 +1,19 @@
 //! Tips for flags that do not exist: the flag that was meant, or the command that has it. clap's own tips take any
 //! similar word, or advise to pass a flag as a value.
 
+use crate::quantity;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
 use mozzi_urdf::did_you_mean;
 use std::ffi::OsString;
 
 /// Flags of other programs, and what is meant.
-const MEANT: [(&str, &str); 14] = [
+const MEANT: [(&str, &str); 19] = [
+    ("friction", "--contact-friction is that of the ground; joints have the friction of their file"),
+    ("robot", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
+    ("model", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
+    ("urdf", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
+    ("file", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
     ("duration", "--time is the duration, s"),
     ("steps", "--time is the duration and --dt the step, s"),
     ("mass", "--payload [FRAME=]m adds a mass, --inertia LINK=… replaces a link's"),
@@ -38,10 +44,22 @@ pub fn explained(mut error: Error, program: &Command, words: &[OsString]) -> Err
                 ContextValue::Strings(list) => list.iter().any(|missing| missing == "<MODEL>"),
                 _ => false,
             };
-            match error.get(ContextKind::InvalidArg).is_some_and(is_model) {
-                true => vec!["`mozzi robots` lists the embedded robots; a file is one, too".to_string()],
-                false => return error,
+            let is_quantity = |value: &ContextValue| match value {
+                ContextValue::Strings(list) => list.iter().any(|missing| missing.starts_with("<QUANTITY>")),
+                _ => false,
+            };
+            let missing = error.get(ContextKind::InvalidArg);
+            match (missing.is_some_and(is_model), missing.is_some_and(is_quantity)) {
+                (true, _) => vec!["`mozzi robots` lists the embedded robots; a file is one, too".to_string()],
+                (_, true) => {
+                    vec!["such as M, C, g, h, J_b, rnea, aba, fk; `mozzi compute --list` shows all".to_string()]
+                }
+                _ => return error,
             }
+        }
+        ErrorKind::InvalidSubcommand => {
+            let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) else { return error };
+            vec![unknown_command(given, program, command)]
         }
         _ => return error,
     };
@@ -50,6 +68,16 @@ pub fn explained(mut error: Error, program: &Command, words: &[OsString]) -> Err
     }
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips.into_iter().map(Into::into).collect()));
     error
+}
+
+fn unknown_command(given: &str, program: &Command, command: &Command) -> String {
+    let names: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+    if command.get_name() != program.get_name() {
+        return format!("expected one of {}", names.join(", "));
+    }
+    let elsewhere = quantity::elsewhere(given).map(str::to_string);
+    let near = || did_you_mean(given, names.iter().copied());
+    elsewhere.or_else(near).unwrap_or_else(|| "`mozzi --help` lists all commands".to_string())
 }
 
 fn unknown(given: &str, program: &Command, command: &Command) -> String {
@@ -73,6 +101,9 @@ fn unknown(given: &str, program: &Command, command: &Command) -> String {
     let own = flags(command);
     if let Some((_, tip)) = MEANT.iter().find(|(known, tip)| *known == flag && is_of(tip, &own)) {
         return (*tip).to_string();
+    }
+    if own.iter().any(|known| known == flag) {
+        return format!("did you mean `--{flag}`?");
     }
     let owners: Vec<String> = program
         .get_subcommands()

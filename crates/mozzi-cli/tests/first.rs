@@ -128,6 +128,11 @@ fn angles_may_be_in_degrees() {
     assert_eq!(numbers(&json(&["compute", "ur5", "aba", "--deg", "--tau=90,0,0,0,0,0"])["tau"])[0], 90.0);
     let (_, said) = complaint(&["compute", "panda", "g", "--q=0,0,0,0,0,0,0,1deg"]);
     assert!(said.contains("entry 8 is `1deg`, which is no angle"), "{said}");
+    let way = |flags: &[&str]| json(&[&["trajectory", "ur5", "--to"][..], flags].concat())["t"].clone();
+    let by_degrees = way(&["90,0,0,0,0,0", "--max-velocity", "90", "--deg"]);
+    assert_eq!(by_degrees, way(&["90deg,0,0,0,0,0", "--max-velocity", "90deg"]));
+    let (_, said) = complaint(&["simulate", "ur5", "--deg", "--until", "elbow_joint > 90"]);
+    assert!(said.contains("conditions of --until and --report-event are in radians"), "{said}");
     // and printed so
     let page = text(&["info", "ur5", "--deg"]);
     assert!(page.contains("-360") && page.contains("units: deg, deg/s, N m"), "{page}");
@@ -342,4 +347,28 @@ fn check_takes_several_files() {
     let output = mozzi(&["check", "ur5", &broken, "--format", "sarif"]);
     let log: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!(output.status.code() == Some(1) && !log["runs"][0]["results"].as_array().expect("a list").is_empty());
+}
+
+#[test]
+fn findings_about_one_element_are_one_block() {
+    let folder = folder("first_blocks");
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><mass value='1'/>\n<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>\n\
+             </inertial></link>"
+        )
+    };
+    // two attributes of one element that URDF does not have, and one of another line
+    let text = format!(
+        "<robot name='a'>{}{}<joint name='j' type='revolute'>\n<limit lower='-1' upper='1' effort='1' velocity='1' gain='2' \
+         offset='3'/>\n<axis xyz='0 0 1' colour='red'/>\n<parent link='b'/><child link='c'/></joint></robot>",
+        link("b"),
+        link("c")
+    );
+    let robot = file(&folder, "robot.urdf", &text);
+    let said = String::from_utf8(mozzi(&["check", &robot]).stderr).expect("text");
+    assert!(said.contains("`gain`") && said.contains("also: ") && said.contains("`offset`"), "{said}");
+    assert_eq!(said.matches("warning").count() - said.matches("warnings").count(), 2, "{said}");
+    let lines = String::from_utf8(mozzi(&["check", &robot, "--json"]).stdout).expect("text");
+    assert_eq!(lines.lines().count(), 3, "{lines}");
 }

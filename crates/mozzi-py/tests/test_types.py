@@ -39,7 +39,8 @@ def test_stubs_say_what_is_compiled(name):
             assert defaults == [p.default for p in real.values() if p.default is not p.empty], name
         if member.startswith("_") or any(getattr(d, "id", "") == "property" for d in node.decorator_list):
             continue
-        given = [a.arg for a in [*node.args.args, *filter(None, [node.args.vararg]), *node.args.kwonlyargs]]
+        variadic = [[*filter(None, [a])] for a in (node.args.vararg, node.args.kwarg)]
+        given = [a.arg for a in [*node.args.args, *variadic[0], *node.args.kwonlyargs, *variadic[1]]]
         assert given == list(inspect.signature(getattr(class_, member)).parameters), member
         defaults = [ast.literal_eval(d) for d in [*node.args.defaults, *node.args.kw_defaults] if d is not None]
         real = inspect.signature(getattr(class_, member)).parameters.values()

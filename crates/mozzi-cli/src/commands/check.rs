@@ -74,7 +74,7 @@ fn as_text(arguments: &CheckArguments, name: &str) -> Result<String> {
         return json_robot(arguments, name);
     }
     let loaded = arguments.policy.open(name)?;
-    loaded.warnings.iter().for_each(failure::say);
+    failure::say(&loaded.warnings);
     mozzi_urdf::unused(&loaded.unused).iter().for_each(|count| failure::note(count));
     let count = loaded.warnings.len();
     sound(input::name(name), count, &arguments.policy.constrained(name, loaded.description)?.build()?)

@@ -1,9 +1,10 @@
 //! `mozzi excite`: a motion that determines a robot's parameters.
 
+use crate::angles;
 use crate::columns::{Columns, save};
 use crate::edits;
 use crate::failure::{self, Failure, Result};
-use crate::numbers::{array, number, numbers};
+use crate::numbers::{self, array, number, one_or_each};
 use crate::robot::FileArguments;
 use crate::tables::format::Format;
 use crate::text::{Page, table};
@@ -66,6 +67,9 @@ pub struct ExciteArguments {
     /// Lock a joint at this position, rad or m
     #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
     lock: Vec<String>,
+    /// List all base parameters
+    #[arg(long)]
+    all: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -113,38 +117,43 @@ pub fn run(arguments: &ExciteArguments) -> Result<String> {
         }
         save(file, &text)?;
     }
-    let text =
-        if arguments.robot.json { object(&model, &found) } else { page(&model, &found, arguments.out.as_deref()) };
+    let text = if arguments.robot.json {
+        object(&model, &found)
+    } else {
+        page(&model, &found, arguments.out.as_deref(), arguments.all)
+    };
     if found.is_stopped { Err(Failure::Stopped(text)) } else { Ok(text) }
 }
 
 impl ExciteArguments {
     fn options(&self, model: &Model) -> Result<ExciteOptions> {
         let mut options = ExciteOptions::new(model, number("--duration", &self.duration)?);
-        let n = model.n();
-        let list = |flag: &str, text: &Option<String>, to: &mut Vec<f64>| -> Result<()> {
-            let Some(text) = text else { return Ok(()) };
-            *to = match numbers(flag, text)?[..] {
-                [x] => vec![x; n],
-                ref all if all.len() == n => all.to_vec(),
-                ref all => return Err(Failure::wrong(format!("{flag} has {} entries, expected 1 or {n}", all.len()))),
-            };
+        let (rates, none) = (angles::of_velocities(model), vec![false; model.n()]);
+        let list = |flag: &str, text: &Option<String>, to: &mut Vec<f64>, are_angles: &[bool]| -> Result<()> {
+            if let Some(text) = text {
+                *to = one_or_each(flag, text, are_angles)?;
+            }
             Ok(())
         };
-        list("--max-velocity", &self.max_velocity, &mut options.limits.velocity)?;
-        list("--max-acceleration", &self.max_acceleration, &mut options.limits.acceleration)?;
+        list("--max-velocity", &self.max_velocity, &mut options.limits.velocity, &rates)?;
+        list("--max-acceleration", &self.max_acceleration, &mut options.limits.acceleration, &rates)?;
         if self.max_torque.is_some() {
-            list("--max-torque", &self.max_torque, &mut options.limits.torque)?;
+            list("--max-torque", &self.max_torque, &mut options.limits.torque, &none)?;
             options.noise = options.limits.torque.iter().map(|t| 0.01 * t).collect();
         }
-        list("--noise", &self.noise, &mut options.noise)?;
+        list("--noise", &self.noise, &mut options.noise, &none)?;
+        let positions = angles::of_positions(model);
         for text in &self.range {
             let (name, pair) = edits::split("--range", text, "JOINT=LOW,HIGH")?;
             let joint = model.joint_names().position(|known| known == name).ok_or_else(|| {
                 let known: Vec<&str> = model.joint_names().collect();
                 Failure::wrong(format!("--range: there is no joint `{name}`, expected one of {}", known.join(", ")))
             })?;
-            let [low, high] = array(&format!("--range {name}"), pair, ["low", "high"])?;
+            let place = format!("--range {name}");
+            let found = numbers::angles(&place, pair, &[positions[joint]; 2])?;
+            let [low, high] = found[..] else {
+                return Err(numbers::wrong_number(&place, found.len(), &["low", "high"]));
+            };
             if !(low < high) {
                 return Err(Failure::wrong(format!(
                     "--range {name} is {low} to {high}, expected the lower number first"
@@ -167,7 +176,7 @@ impl ExciteArguments {
             let sphere = |name: &str, radius| Ok::<_, Failure>(Sphere { frame: model.frame(name)?, radius });
             options.limits.apart.push((sphere(a, r)?, sphere(b, R)?));
         }
-        options.start = self.start.as_deref().map(|text| numbers("--start", text)).transpose()?;
+        options.start = self.start.as_deref().map(|text| numbers::angles("--start", text, &positions)).transpose()?;
         options.rate = number("--rate", &self.rate)?;
         options.harmonics = self.harmonics;
         options.goal = match self.goal {
@@ -204,7 +213,12 @@ fn rows(model: &Model, found: &Excitation, duration: f64, step: f64) -> Result<C
     Ok(columns)
 }
 
-fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
+/// Base parameters of a default page.
+const SHOWN: usize = 40;
+/// Longest name of one.
+const LONGEST: usize = 44;
+
+fn page(model: &Model, found: &Excitation, out: Option<&str>, is_long: bool) -> String {
     let mut page = Page::default();
     page.line(format!(
         "{}: a motion of {} s, {} harmonics",
@@ -223,12 +237,18 @@ fn page(model: &Model, found: &Excitation, out: Option<&str>) -> String {
         found.parameters.len()
     ));
     let mut rows = vec![["", "value", "deviation"].map(str::to_string).to_vec()];
-    for (name, value, deviation) in &found.parameters {
+    let most = if is_long { usize::MAX } else { SHOWN };
+    for (name, value, deviation) in found.parameters.iter().take(most) {
+        let is_cut = name.chars().count() > LONGEST;
         let name: String =
-            if name.chars().count() > 60 { name.chars().take(57).chain("…".chars()).collect() } else { name.clone() };
+            if is_cut { name.chars().take(LONGEST - 1).chain("…".chars()).collect() } else { name.clone() };
         rows.push(vec![name, format!("{value:.4}"), format!("{deviation:.4}")]);
     }
     page.title("predicted confidence: base parameters of the robot's file").lines(&table(&rows, "lrr"));
+    page.line("  A base parameter is a sum of parameters that forces depend on, such as m c_x + l m'.");
+    if found.parameters.len() > most {
+        page.line(format!("  … {} more base parameters; --all shows them", found.parameters.len() - most));
+    }
     match out {
         Some(file) => {
             page.blank().line(format!("{file} is written; check the motion for collisions before you run it"));

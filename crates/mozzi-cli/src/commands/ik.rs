@@ -4,7 +4,7 @@ use crate::angles;
 use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
-use crate::numbers::number;
+use crate::numbers::{angle, number};
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units, space_frame};
 use crate::state::{pasted, positions};
@@ -46,7 +46,7 @@ pub struct IkArguments {
     #[arg(long, default_value = "levenberg-marquardt")]
     method: Way,
     /// Tolerance on the angle to the goal, rad
-    #[arg(long, value_name = "RAD", default_value = "1e-8", allow_hyphen_values = true)]
+    #[arg(long, value_name = "RAD", default_value = "1e-8rad", allow_hyphen_values = true)]
     angle: String,
     /// Tolerance on the distance to the goal, m
     #[arg(long, value_name = "M", default_value = "1e-8", allow_hyphen_values = true)]
@@ -116,7 +116,7 @@ impl IkArguments {
             Way::LevenbergMarquardt => inverse_kinematics::Method::LevenbergMarquardt,
             Way::Newton => inverse_kinematics::Method::Newton,
         };
-        let (angle, distance) = (number("--angle", &self.angle)?, number("--distance", &self.distance)?);
+        let (angle, distance) = (angle("--angle", &self.angle)?, number("--distance", &self.distance)?);
         let (iterations, starts, seed, limits) = (self.iterations, self.starts, self.seed, !self.ignore_limits);
         Ok(Options { method, angle, distance, iterations, starts, seed, limits, ..Options::default() })
     }

@@ -131,11 +131,10 @@ pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
     let format =
         |columns: &[usize]| Decimals::above(places_noise, &columns.iter().flat_map(|&c| column(c)).collect::<Vec<_>>());
     let formats: Vec<Decimals> = match model.is_floating() {
-        true => {
-            let (lengths, angles) = (format(&[0, 4, 5, 6]), format(&[1, 2, 3]));
-            (0..n).map(|c| if (1..=3).contains(&c) { angles } else { lengths }).collect()
+        true if angles::are_degrees() => {
+            (0..n).map(|c| format(if (1..=3).contains(&c) { &[1, 2, 3] } else { &[0, 4, 5, 6] })).collect()
         }
-        false => vec![format(&(0..n).collect::<Vec<_>>()); n],
+        _ => vec![format(&(0..n).collect::<Vec<_>>()); n],
     };
     let of_energy = |pick: fn(&Energy) -> f64| {
         let values: Vec<f64> = picked.iter().map(|&k| pick(&motion.energy[k])).collect();

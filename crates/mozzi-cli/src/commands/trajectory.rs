@@ -6,7 +6,7 @@ use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
 use crate::motors::check_times;
-use crate::numbers::number;
+use crate::numbers::{number, one_or_each};
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units};
 use crate::state::positions;
@@ -105,7 +105,12 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let model = arguments.robot.load_at(|model| positions("--from", arguments.from.as_deref(), model))?;
     let limits = arguments.limits(&model)?;
-    let motion = arguments.motion(&model, &limits)?;
+    let motion = arguments.motion(&model, &limits).map_err(|failure| match failure {
+        Failure::Wrong(sentence) if sentence.starts_with("nothing limits the speed") => {
+            Failure::wrong(format!("{sentence}; --time is a duration, --max-velocity a limit"))
+        }
+        other => other,
+    })?;
     let step = number("--step", &arguments.step)?;
     let count = motion.duration() / step;
     if !(step > 0.0) || count > MOST_ROWS {
@@ -145,23 +150,15 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
 impl TrajectoryArguments {
     fn limits(&self, model: &Model) -> Result<Limits> {
         let robots = Limits::of(model);
-        let list = |flag: &str, text: &Option<String>, default: Vec<f64>| match text.as_deref() {
+        let (rates, none) = (angles::of_velocities(model), vec![false; model.n()]);
+        let list = |flag: &str, text: &Option<String>, default: Vec<f64>, are_angles: &[bool]| match text.as_deref() {
             None => Ok(default),
-            Some(text) => match crate::numbers::numbers(flag, text)?[..] {
-                [x] => Ok(vec![x; model.n()]),
-                ref all if all.len() == model.n() => Ok(all.to_vec()),
-                ref all => Err(crate::numbers::wrong_count(
-                    flag,
-                    all.len(),
-                    model.n(),
-                    "one for each velocity, or one for all",
-                )),
-            },
+            Some(text) => one_or_each(flag, text, are_angles),
         };
         Ok(Limits {
-            velocity: list("--max-velocity", &self.max_velocity, robots.velocity)?,
-            acceleration: list("--max-acceleration", &self.max_acceleration, robots.acceleration)?,
-            torque: list("--max-torque", &self.max_torque, robots.torque)?,
+            velocity: list("--max-velocity", &self.max_velocity, robots.velocity, &rates)?,
+            acceleration: list("--max-acceleration", &self.max_acceleration, robots.acceleration, &rates)?,
+            torque: list("--max-torque", &self.max_torque, robots.torque, &none)?,
         })
     }
 

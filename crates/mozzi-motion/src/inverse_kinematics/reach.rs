@@ -31,7 +31,7 @@ impl InverseKinematics<'_> {
         let shoulder = shoulder(self.model, self.frame, theta)?;
         let reach = self.reach(shoulder, theta)?;
         let distance = (goal - shoulder).norm();
-        let [x, y, z] = shoulder.0.map(|x| short(x));
+        let [x, y, z] = shoulder.0.map(short);
         (distance > reach + OFF).then(|| {
             format!(
                 "the goal is {} m out of reach: it is {} m from the shoulder at ({x}, {y}, {z}), the arm reaches {} m",

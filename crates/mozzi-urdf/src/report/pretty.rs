@@ -38,7 +38,14 @@ impl Style {
 impl Diagnostic {
     /// The rendered report, which ends with an empty line.
     pub fn pretty(&self, style: Style) -> String {
-        let Some(text) = self.text() else { return format!("{self}\n\n") };
+        self.block(&[], style)
+    }
+
+    /// The report with further findings about the same element.
+    fn block(&self, others: &[&Diagnostic], style: Style) -> String {
+        let Some(text) = self.text() else {
+            return std::iter::once(&self).chain(others).map(|found| format!("{found}\n\n")).collect();
+        };
         let level = match self.severity() {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
@@ -56,8 +63,28 @@ impl Diagnostic {
             }
         };
         let report = report.elements(self.help().map(|help| Level::HELP.message(visible(help))));
+        // a help that was given is not repeated
+        let is_new =
+            |k: usize, help: &str| self.help() != Some(help) && others[..k].iter().all(|o| o.help() != Some(help));
+        let others = others.iter().enumerate().flat_map(|(k, found)| {
+            let short = found.code().rsplit("::").next().unwrap_or_default();
+            let also = Level::NOTE.message(format!("also: {} ({short})", visible(found.message())));
+            let help = found.help().filter(|help| is_new(k, help)).map(|help| Level::HELP.message(visible(help)));
+            std::iter::once(also).chain(help)
+        });
+        let report = report.elements(others.collect::<Vec<_>>());
         style.renderer().render(&[report]) + "\n\n"
     }
+}
+
+/// The rendered reports; consecutive findings of one severity in one line of a file, which are about one element, are
+/// one block.
+pub fn pretty<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>, style: Style) -> String {
+    let all: Vec<&Diagnostic> = diagnostics.into_iter().collect();
+    let is_one_element = |a: &&Diagnostic, b: &&Diagnostic| {
+        (a.file(), a.line(), a.severity()) == (b.file(), b.line(), b.severity()) && a.calls() == b.calls()
+    };
+    all.chunk_by(is_one_element).map(|block| block[0].block(&block[1..], style)).collect()
 }
 
 impl LoadError {
@@ -67,9 +94,7 @@ impl LoadError {
         let is_warning =
             |found: &&Diagnostic| found.severity() == Severity::Warning && found.consequence() != Consequence::Unused;
         let warnings = self.diagnostics().iter().filter(is_warning);
-        for diagnostic in warnings.take(PRINTED).chain(self.errors().take(PRINTED)) {
-            text.push_str(&diagnostic.pretty(style));
-        }
+        text.push_str(&pretty(warnings.take(PRINTED).chain(self.errors().take(PRINTED)), style));
         // writing to a String cannot fail
         let _ = match self.more() {
             0 => write!(text, "{}", self.headline()),

@@ -2,6 +2,7 @@
 
 use super::check::{Problem, Severity};
 use crate::spelling::nearest;
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{self, Write};
@@ -150,11 +151,14 @@ impl fmt::Display for Error {
             Error::SingularMassMatrix { joint, pivot, diagonal, theta } => write!(
                 f,
                 "the mass matrix is singular at joint `{joint}`: its pivot is {pivot:e}, against {diagonal:e} on the diagonal (it moves no inertia, or \
-         other joints produce the same motion), at θ = {theta:?}"
+         other joints produce the same motion), at θ = {}",
+                short(theta)
             ),
             Error::SingularTask { singular_values, tolerance, theta } => write!(
                 f,
-                "the task is singular at θ = {theta:?}: the singular values of its Jacobian are {singular_values:?}, the smallest below {tolerance:e}"
+                "the task is singular at θ = {}: the singular values of its Jacobian are {}, the smallest below {tolerance:.1e}",
+                short(theta),
+                short(singular_values)
             ),
             Error::NoMass { mass } => write!(f, "the robot's total mass is {mass} kg; the centre of mass is undefined"),
             Error::BadArgument { what, found, expected } => write!(f, "{what} is {found}, expected {expected}"),
@@ -171,6 +175,17 @@ fn list(problems: &[Problem]) -> String {
         let _ = write!(text, "\n  {problem}");
         text
     })
+}
+
+/// Numbers with at most six decimals.
+fn short(list: &[f64]) -> String {
+    let mut text = String::from("[");
+    for (k, x) in list.iter().enumerate() {
+        let decimals = format!("{x:.6}");
+        let number = decimals.trim_end_matches('0').trim_end_matches('.');
+        let _ = write!(text, "{}{}", if k == 0 { "" } else { ", " }, if number == "-0" { "0" } else { number });
+    }
+    text + "]"
 }
 
 pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {

@@ -57,7 +57,6 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     if model.n() == 0 {
         return Err(Failure::wrong(format!("`{}` has no joint that moves: nothing to time", model.description().name)));
     }
-    let tip = end_effector(&model);
     let is_empty = |quantity: &Declaration| quantity.is_constrained && model.constraint_rows() == 0;
     // the random states have no other numbers
     let has_inputs =
@@ -65,10 +64,12 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     let is_often_used = |index: usize| arguments.all || OFTEN_USED.contains(&LIST[index].name);
     let is_usual = |&index: &usize| is_often_used(index) && LIST[index].of != Of::Task && !is_empty(&LIST[index]);
     let usual = (0..LIST.len()).filter(is_usual).map(Query::at).filter(has_inputs);
-    let asked = if arguments.quantity.is_empty() { usual.collect() } else { arguments.quantity.clone() };
+    let asked: Vec<Query> = if arguments.quantity.is_empty() { usual.collect() } else { arguments.quantity.clone() };
     if asked.iter().any(|query| is_empty(query.declaration())) {
         needs_constraints(&model)?;
     }
+    let needs_frame = |query: &Query| is_of_a_frame(*query) || query.declaration().uses == Uses::WRENCHES;
+    let tip = if asked.iter().any(needs_frame) { end_effector(&model) } else { model.end_effector().ok() };
     let is_of_wrenches = |query: Query| query.declaration().uses == Uses::WRENCHES;
     let asked = asked.into_iter().filter(|&query| tip.is_some() || !(is_of_a_frame(query) || is_of_wrenches(query)));
     let queries: Vec<Query> =

@@ -52,7 +52,7 @@ pub fn page(terms: &Terms, is_verbose: bool, most: usize) -> String {
     };
     sections.add("names", order, flow(&names));
     sections.add("C, Ṁ", "the Coriolis matrix, and the rate of M", coriolis(terms));
-    if !terms.is_task_given {
+    if !terms.is_task_given && terms.task.is_some() {
         sections.add("Λ, η", task_title, task(terms));
     }
     let jacobians = if terms.tip.is_some() { jacobians(terms) } else { Vec::new() };

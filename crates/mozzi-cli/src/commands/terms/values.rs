@@ -94,7 +94,7 @@ impl<'m> Terms<'m> {
 
     /// Replaces rounding errors by 0, for a page.
     pub fn clean(&mut self, environment: &Environment) {
-        let queries: Vec<Query> = SHOWN.map(|name| Query::named(name)).into_iter().flatten().collect();
+        let queries: Vec<Query> = SHOWN.map(Query::named).into_iter().flatten().collect();
         for query in queries {
             let Ok(one) = self.one(query, *environment) else { continue };
             let outputs = cleaned(one.query, self.model, &one.inputs, environment, &one.outputs);

@@ -1,0 +1,66 @@
+"""Quantities by their usual names, robots from any file, and the command `mozzi`."""
+
+import subprocess
+import sys
+
+import mozzi
+import numpy as np
+import pytest
+from conftest import MODELS
+
+THETA = [0, -1.2, 1.5, 0.3, 1.1, 0]
+
+
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        ("M", "mass_matrix"),
+        ("crba", "mass_matrix"),
+        ("g", "gravity_forces"),
+        ("J_b", "body_jacobian"),
+        ("fk", "forward_kinematics"),
+        ("mass-matrix", "mass_matrix"),
+        ("com", "center_of_mass"),
+    ],
+)
+def test_a_quantity_has_the_names_that_people_know(ur5, name, method):
+    assert np.array_equal(ur5.compute(name, THETA), getattr(ur5, method)(THETA))
+
+
+def test_arguments_are_those_of_the_method(ur5):
+    found = ur5.compute("rnea", THETA, dtheta=np.ones(6), ddtheta=np.zeros(6))
+    assert np.array_equal(found, ur5.inverse_dynamics(THETA, np.ones(6), np.zeros(6)))
+    many = np.zeros((3, 6))
+    assert ur5.compute("T", many, frame="forearm_link").shape == (3, 4, 4)
+    with pytest.raises(ValueError, match="no quantity `mass_matrx`; the nearest of 57 are `mass_matrix`"):
+        ur5.compute("mass_matrx", THETA)
+
+
+def test_load_takes_names_paths_files_and_json(tmp_path):
+    assert mozzi.Model.load("ur5") == mozzi.models.ur5()
+    assert mozzi.Model.load("anymal", floating=True) == mozzi.models.anymal(floating=True)
+    path = MODELS / "two_link_planar.urdf"
+    assert mozzi.Model.load(path) == mozzi.Model.from_urdf(path)
+    with path.open() as file:
+        assert mozzi.Model.load(file).n == 2
+    json = tmp_path / "ur5.json"
+    command("convert", "ur5", str(json))
+    assert mozzi.Model.load(json).n == 6
+    (tmp_path / "broken.json").write_text('{"robot": 1')
+    with pytest.raises(ValueError, match="broken.json"):
+        mozzi.Model.load(tmp_path / "broken.json")
+    with pytest.raises(FileNotFoundError, match="nothing_like_it"):
+        mozzi.Model.load("nothing_like_it")
+
+
+def command(*words, expected=0):
+    done = subprocess.run([sys.executable, "-m", "mozzi", *words], capture_output=True, text=True, timeout=120)
+    assert done.returncode == expected, done.stderr
+    return done.stdout if expected == 0 else done.stderr
+
+
+def test_the_command_line_is_in_the_package():
+    assert "tool0" in command("robots")
+    assert "mass_matrix" in command("compute", "ur5", "M")
+    assert command("check", "nothing.urdf", expected=1).startswith("error: ")
+    assert "tip" in command("compute", "ur5", "M", "--cutoff", "1", expected=2)
