@@ -17,6 +17,7 @@ mod gpu;
 mod ground;
 mod identify;
 mod identify_files;
+mod identify_logs;
 mod ik;
 mod interrupt;
 mod logs;

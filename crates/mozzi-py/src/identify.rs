@@ -143,6 +143,7 @@ pub fn _identify<'py>(
         robust: option(options, "robust")?.unwrap_or(false),
         limits: Limits { total_mass: total_mass.map(|(m, d)| [m, d]), ..Limits::default() },
         tenths: tenths.round() as usize,
+        trust_log: option(options, "trust_log")?.unwrap_or(false),
     };
     let stop = || Python::attach(|py| py.check_signals().is_err());
     let work = || -> Result<_, Error> {

@@ -4,8 +4,10 @@ pub mod butterworth;
 pub mod smoothing_spline;
 pub mod spectrum;
 
+use crate::judgement::velocities;
 use crate::log::Rows;
-use crate::{Error, Finding, Log};
+use crate::mend::mend;
+use crate::{Error, Finding, Level, Log};
 use butterworth::LowPass;
 use mozzi::{FrameId, Freedom, Model, SpatialInertia};
 use smoothing_spline::SmoothingSpline;
@@ -129,8 +131,13 @@ impl Samples {
 /// # Errors
 /// As [`Log::check`], and [`Error::TooShort`] if no run is long enough for the filter.
 pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Vec<Finding>), Error> {
-    let rows = log.check(model)?;
-    let mut findings = rows.findings.clone();
+    let (log, mut findings) = mend(model, log)?;
+    let log = log.as_ref();
+    if findings.iter().any(|finding| finding.level == Level::Fault && finding.code.contains("clock")) {
+        return Err(Error::of_faults(&findings)); // no signal can be filtered without its times
+    }
+    let mut rows = log.check(model)?;
+    findings.extend(rows.findings.clone());
     let rate = 1.0 / rows.step;
     let cutoff = match filter.cutoff {
         Cutoff::None => None,
@@ -148,6 +155,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
         }
     };
     let low_pass = cutoff.map(|f| LowPass::new(filter.order, f, rate)).transpose()?;
+    rows.bridge(log, cutoff, &mut findings);
     // what the ends of a filtered run are worth: two periods of the cut-off
     let trim = cutoff.map_or(0, |f| (2.0 * rate / f).ceil() as usize);
     let mut samples =
@@ -160,6 +168,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
         let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter };
         part.append(trim, &mut samples);
     }
+    findings.extend(velocities::check(model, log, &rows, low_pass.as_ref(), trim));
     if samples.count() < 20 {
         let why = format!("two periods of the cut-off, {trim} rows, are left out at both ends of each run");
         return Err(Error::TooShort { log: log.name.clone(), found: samples.count(), expected: 20, why });
@@ -197,7 +206,7 @@ fn automatic(model: &Model, log: &Log, rows: &Rows) -> f64 {
 }
 
 /// Linear interpolation at even times.
-fn resampled(t: &[f64], x: &[f64], step: f64) -> Vec<f64> {
+pub(crate) fn resampled(t: &[f64], x: &[f64], step: f64) -> Vec<f64> {
     let count = ((t[t.len() - 1] - t[0]) / step + 1e-6) as usize + 1;
     let mut k = 0;
     (0..count)
