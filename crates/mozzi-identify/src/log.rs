@@ -132,7 +132,12 @@ impl Log {
         }
         let expected = 20;
         if usable.len() < expected {
-            return Err(Error::TooShort { log: log(), found: usable.len(), expected, why: format!("of {N}") });
+            return Err(Error::TooShort {
+                log: log(),
+                found: usable.len(),
+                expected,
+                why: self.few(N, repeated, not_finite),
+            });
         }
         let step = self.median_step(&usable, repeated, &mut findings);
         let runs = self.runs(&usable, step);
@@ -162,6 +167,15 @@ impl Log {
             ));
         }
         median
+    }
+
+    /// Why few rows are usable.
+    fn few(&self, rows: usize, repeated: usize, not_finite: usize) -> String {
+        match (repeated, not_finite) {
+            (0, 0) => format!("of {rows}"),
+            (_, 0) => format!("of {rows}; {repeated} repeat the row before: the numbers are constant"),
+            _ => format!("of {rows}; {repeated} repeat the row before, {not_finite} are not finite"),
+        }
     }
 
     /// Positions that never change, and forces that do not.

@@ -13,7 +13,7 @@ pub mod unit;
 mod word;
 mod wrench;
 
-pub use entries::{Force, IS_CURRENT, is_alike};
+pub use entries::{Force, IS_CURRENT, holds_names, is_alike};
 pub use show::Row;
 pub use time::Time;
 

@@ -9,7 +9,7 @@ use crate::failure::{self, Failure, Result};
 use crate::input::{self, Input, cannot};
 use crate::numbers::number;
 use crate::progress::Progress;
-use crate::recogniser::{GROUPS, Header, Recognised};
+use crate::recogniser::{GROUPS, Header, Recognised, holds_names};
 use crate::tables::How;
 use crate::tables::samples::Samples;
 use dialect::{Dialect, Separator};
@@ -181,7 +181,21 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) 
     let (mut lines, mut rows): (Vec<u64>, Vec<f64>) = Default::default();
     let cells = Cells { has_decimal_commas: text.dialect.has_decimal_commas, may_miss: how.may_miss };
     let is_time: Vec<bool> = used.iter().map(|&column| found.is_time(column)).collect();
+    let names: Vec<usize> = (0..header.names.len()).filter(|&column| holds_names(&header.names[column])).collect();
     text.rows(how.may_miss, |line, record| {
+        for &column in &names {
+            let (first, now) = (header.first.get(column).map(String::as_str), record.get(column));
+            if first != now {
+                return Err(Failure::wrong(format!(
+                    "{name}:{line}: column {} (`{}`) is `{}`, `{}` before: the order of the joints changes, expected the \
+                     same names in all rows",
+                    column + 1,
+                    header.names[column],
+                    now.unwrap_or_default(),
+                    first.unwrap_or_default()
+                )));
+            }
+        }
         for (&column, &is_time) in used.iter().zip(&is_time) {
             let place = format_args!("{name}:{line}: column {} (`{}`)", column + 1, header.names[column]);
             rows.push(cells.number(place, record.get(column).unwrap_or_default(), is_time)?);
@@ -233,8 +247,11 @@ impl Cells {
 fn check_lists(text: &TextTable) -> Result<()> {
     for (column, cell) in text.header.first.iter().enumerate() {
         let cell = cell.trim();
+        let name = text.header.names.get(column).map_or("", String::as_str);
+        if holds_names(name) {
+            continue;
+        }
         if cell.len() > 2 && cell.starts_with(['[', '(']) && cell.ends_with([']', ')']) && cell.contains([',', ' ']) {
-            let name = text.header.names.get(column).map_or("", String::as_str);
             return Err(Failure::wrong(format!(
                 "{}: column {} (`{name}`) holds lists, such as `{}`, expected one number in each cell; in pandas: \
                  df[[\"{name}_0\", …]] = df[\"{name}\"].map(ast.literal_eval).tolist()",

@@ -155,6 +155,22 @@ fn headers_and_formats_of_drivers_are_read() {
         format!("{:.6},{k},{s},{ns},,joint1,joint2,{}", epoch + x[0] + 0.001, joined(&x[1..], ","))
     });
     v.check("bagpy.csv", rows, &[], &Same);
+    let listed = "Time,name,position_0,position_1,velocity_0,velocity_1,effort_0,effort_1";
+    let rows = with(listed, |_, x| {
+        let swapped = joined(&[x[2], x[1], x[4], x[3], x[6], x[5]], ",");
+        format!("{:.6},\"['joint2', 'joint1']\",{swapped}", epoch + x[0])
+    });
+    v.check("bagpy_listed.csv", rows, &[], &Same);
+    let rows = with("Time,position,velocity,effort", |_, x| {
+        format!(
+            "{:.6},\"[{}]\",\"[{}]\",\"[{}]\"",
+            x[0],
+            joined(&x[1..3], ", "),
+            joined(&x[3..5], ", "),
+            joined(&x[5..], ", ")
+        )
+    });
+    v.check("lists.csv", rows, &[], &Words(&["holds lists", "position"]));
     v.check("pandas.csv", with(&format!(",{OWN}"), |k, x| format!("{k},{}", joined(x, ","))), &[], &Same);
     let iso = with(&OWN.replacen('t', "timestamp", 1), |_, x| {
         format!("2024-05-01T12:00:{:09.6}Z,{}", x[0], joined(&x[1..], ","))
@@ -319,6 +335,18 @@ fn faults_of_logs_are_mended_or_named() {
         .map(|(k, line)| if k > 0 && k % 3 == 0 { format!("{line}\n{line}\n") } else { format!("{line}\n") })
         .collect();
     v.check("repeated.csv", repeated, &[], &Same);
+    let jump = m().map(|k, q, _, _| q[0] += if k > 600 { 0.7 } else { 0.0 });
+    v.check("jump.csv", jump.table(OWN, ","), &[], &Words(&["jumps by 0.7", "joint1"]));
+    let first = clean();
+    let constant = m().map(move |_, q, v, tau| (*q, *v, *tau) = (first.theta[0], first.dtheta[0], first.tau[0]));
+    v.check("constant.csv", constant.table(OWN, ","), &[], &Words(&["constant"]));
+    let two = m().map(|_, q, v, tau| {
+        q.swap(0, 1);
+        tau.swap(0, 1);
+        v.swap(0, 1);
+        [q, v].into_iter().flatten().for_each(|x| *x = x.to_degrees());
+    });
+    v.check("two_faults.csv", two.table(OWN, ","), &[], &Words(&["no single mistake explains it"]));
     v.check("gap.csv", m().without(500..506).table(OWN, ","), &[], &Same);
     v.end(24);
 }

@@ -147,7 +147,7 @@ pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, 
                     false => "later: filtered, or that of another motion?",
                 };
                 fault(
-                    "velocity",
+                    if lag < 0.0 { "velocity" } else { "causal_filter" },
                     format!(
                         "the velocity of {name} differs by {:.1} % from its position's derivative, and comes {:.1} ms \
                          {when} Leave velocities out, then positions are differentiated",

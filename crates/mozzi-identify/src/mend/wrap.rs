@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
 /// A step larger than this many usual ones, and than this angle or length, is a jump.
-const JUMP: (f64, f64) = (50.0, 0.1);
+const JUMP: (f64, f64) = (15.0, 0.05);
 
 /// Adds whole turns, so that revolute joints turn continuously; other jumps are faults.
 pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {

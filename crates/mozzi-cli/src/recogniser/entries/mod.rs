@@ -3,7 +3,7 @@
 mod complaints;
 mod similar;
 
-pub use similar::is_alike;
+pub use similar::{holds_names, is_alike};
 
 use super::reading::{self, Entry, Kind, Reading, suits};
 use super::unit::Dimension;

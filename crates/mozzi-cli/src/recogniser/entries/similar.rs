@@ -23,21 +23,34 @@ pub fn is_alike(joint: &str, name: &str) -> bool {
     plain(joint) == plain(name) || ends(joint, name) || ends(name, joint)
 }
 
+/// Whether a column holds joints' names as text: `field.name0`, `name`.
+pub fn holds_names(column: &str) -> bool {
+    let last = column.rsplit(['/', '.']).next().unwrap_or_default();
+    let letters: String = last.chars().filter(|c| c.is_alphabetic()).collect();
+    matches!(letters.to_lowercase().as_str(), "name" | "names")
+}
+
 impl Search<'_> {
-    /// Columns `name0` … hold the names of `position0` …
+    /// Columns `name0` … hold the names of `position0` …, a column `name` with a list those of all.
     pub(super) fn name_indices(&self, readings: &mut [(usize, Reading)]) {
         let mut names: BTreeMap<(String, usize), String> = BTreeMap::new();
-        for (column, name) in self.header.names.iter().enumerate() {
+        for (column, name) in self.header.names.iter().enumerate().filter(|(_, name)| holds_names(name)) {
+            let Some(cell) = self.header.first.get(column).map(|cell| cell.trim()) else { continue };
             let separator = if name.contains('/') { '/' } else { '.' };
             let parts: Vec<&str> = name.split(separator).filter(|part| !part.is_empty()).collect();
-            let Some(last) = parts.last() else { continue };
-            let digits: String = last.chars().filter(char::is_ascii_digit).collect();
-            let letters: String = last.chars().filter(|c| c.is_alphabetic()).collect();
-            let cell = self.header.first.get(column).map(|cell| cell.trim().trim_matches(['"', '\'']));
-            if let (Ok(index), "name" | "names", Some(cell)) = (digits.parse(), letters.to_lowercase().as_str(), cell) {
-                if !cell.is_empty() && cell.parse::<f64>().is_err() {
-                    let path = parts[..parts.len() - 1].join(&separator.to_string());
-                    names.insert((path, index), cell.to_string());
+            let path = parts[..parts.len() - 1].join(&separator.to_string());
+            let digits: String = parts[parts.len() - 1].chars().filter(char::is_ascii_digit).collect();
+            let bare = |text: &str| text.trim().trim_matches(['"', '\'']).to_string();
+            let mut add = |k: usize, text: &str| {
+                if !bare(text).is_empty() && text.trim().parse::<f64>().is_err() {
+                    names.insert((path.clone(), k), bare(text));
+                }
+            };
+            match digits.parse() {
+                Ok(index) => add(index, cell),
+                Err(_) => {
+                    let inside = cell.trim_matches(['"', '[', ']', '(', ')']);
+                    inside.split(',').enumerate().for_each(|(k, text)| add(k, text));
                 }
             }
         }
