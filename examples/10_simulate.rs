@@ -12,8 +12,8 @@
 //! its drift is a second check.
 
 use mozzi::Model;
-use mozzi::simulation::{Method, Options, Zero};
 use mozzi_examples::{agree, difference, row};
+use mozzi_sim::{Method, Options, Zero};
 use std::error::Error;
 
 const DURATION: f64 = 2.0;
@@ -21,8 +21,9 @@ const START: [f64; 2] = [1.2, 0.5];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let model = mozzi_urdf::open("double_pendulum")?.build()?;
-    let run =
-        |method, steps| model.simulate(&START, &[0.0; 2], Zero, &Options { method, ..Options::new(DURATION, steps) });
+    let run = |method, steps| {
+        mozzi_sim::simulate(&model, &START, &[0.0; 2], Zero, &Options { method, ..Options::new(DURATION, steps) })
+    };
 
     // the book's algorithm by hand
     let (theta, dtheta) = euler(&model, 1000)?;

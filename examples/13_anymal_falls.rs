@@ -9,9 +9,9 @@
 //! h is Σ [Ad]ᵀ𝒢𝒱 over the links. The balance is checked in two plots: ḣ at each time against the forces at that time,
 //! and h(t) − h(0) against the time integral of the forces.
 
-use mozzi::simulation::{Input, Options};
 use mozzi::{FrameId, Model, Vec3, Wrench};
 use mozzi_examples::{agree, row};
+use mozzi_sim::{Input, Options};
 use std::error::Error;
 
 /// Hip, thigh and knee of the legs LF, LH, RF, RH, as the file has them.
@@ -39,7 +39,7 @@ impl Legs<'_> {
 }
 
 impl Input for &Legs<'_> {
-    fn torque(&mut self, _: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+    fn torque(&mut self, _: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         for (j, stance) in STANCE.iter().enumerate() {
             tau[6 + j] = 150.0 * (stance - theta[7 + j]) - 5.0 * dtheta[6 + j];
         }
@@ -52,7 +52,7 @@ impl Input for &Legs<'_> {
         theta: &[f64],
         dtheta: &[f64],
         wrenches: &mut Vec<(FrameId, Wrench)>,
-    ) -> Result<(), mozzi::Error> {
+    ) -> Result<(), mozzi_sim::Error> {
         for &foot in &self.feet {
             let R = self.model.forward_kinematics(theta, foot)?.R;
             let (_, f) = self.ground(theta, dtheta, foot)?;
@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     theta[7..].copy_from_slice(&STANCE);
     let mut dtheta = vec![0.0; anymal.n()];
     dtheta[..6].copy_from_slice(&[0.5, -0.3, 0.0, 0.4, 0.0, 0.0]);
-    let fall = anymal.simulate(&theta, &dtheta, &legs, &Options::new(DURATION, STEPS))?;
+    let fall = mozzi_sim::simulate(&anymal, &theta, &dtheta, &legs, &Options::new(DURATION, STEPS))?;
 
     let weight = Wrench { m: Vec3::zero(), f: anymal.gravity() * anymal.mass() };
     let start = anymal.momentum(&theta, &dtheta, Vec3::zero())?;

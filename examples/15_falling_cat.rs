@@ -7,10 +7,11 @@
 //!
 //! The same by forward dynamics: motors make the joints follow the loop, and no wrench acts on the base.
 
+use mozzi::model::integrate;
 use mozzi::nalgebra::{DMatrix, DVector};
-use mozzi::simulation::{Options, torque};
-use mozzi::{Model, SE3, Vec3, integrate};
+use mozzi::{Model, SE3, Vec3};
 use mozzi_examples::agree;
+use mozzi_sim::{Options, torque};
 use std::error::Error;
 use std::f64::consts::TAU;
 
@@ -105,7 +106,7 @@ fn by_forces(arm: &Model) -> Result<SE3, Box<dyn Error>> {
     });
     let mut theta: Vec<f64> = arm.neutral_configuration();
     theta[7..].copy_from_slice(&POSE);
-    let end = arm.simulate(&theta, &vec![0.0; arm.n()], motors, &Options::new(1.0, 1000))?;
+    let end = mozzi_sim::simulate(&arm, &theta, &vec![0.0; arm.n()], motors, &Options::new(1.0, 1000))?;
     let momentum = arm.momentum(end.last().theta, end.last().dtheta, Vec3::zero())?;
     println!("  by forces: momentum at the end {:.0e}, base {:.0e} rad/s", momentum.norm(), end.last().dtheta[0].abs());
     Ok(SE3::from_pose(*end.last().theta.first_chunk().ok_or("a base")?))

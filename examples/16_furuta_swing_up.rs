@@ -8,8 +8,9 @@
 //!
 //! is computed backwards in time, then applied forwards, with a step size that is reduced until the cost falls.
 
+use mozzi::Model;
 use mozzi::nalgebra::{Matrix4, RowVector4, Vector4};
-use mozzi::{Error, Model, simulation::Options};
+use mozzi_sim::{Error, Options, held_step, step_sensitivity};
 use std::f64::consts::PI;
 
 const STEPS: usize = 200;
@@ -70,7 +71,7 @@ fn follow(pendulum: &Model, torque: impl Fn(usize, &Vector4<f64>) -> f64) -> Res
     for k in 0..STEPS {
         u.push(torque(k, &x[k]));
         let (theta, dtheta) = x[k].as_slice().split_at(2);
-        let (theta, dtheta) = pendulum.held_step(theta, dtheta, &[u[k], 0.0], &Options::new(SECONDS, STEPS))?;
+        let (theta, dtheta) = held_step(pendulum, theta, dtheta, &[u[k], 0.0], &Options::new(SECONDS, STEPS))?;
         x.push(Vector4::from_iterator(theta.into_iter().chain(dtheta)));
     }
     Ok(Motion { x, u })
@@ -81,7 +82,7 @@ fn improve(pendulum: &Model, Motion { x, u }: &Motion) -> Result<Vec<(f64, RowVe
     let (mut V, mut v, mut policy) = (weights(STEPS), weights(STEPS) * x[STEPS], Vec::new());
     for k in (0..STEPS).rev() {
         let (theta, dtheta) = x[k].as_slice().split_at(2);
-        let step = pendulum.step_sensitivity(theta, dtheta, &[u[k], 0.0], &Options::new(SECONDS, STEPS), &[])?;
+        let step = step_sensitivity(pendulum, theta, dtheta, &[u[k], 0.0], &Options::new(SECONDS, STEPS), &[])?;
         let (A, B) = (Matrix4::from_column_slice(step.A.as_slice()), step.B.fixed_columns::<1>(0).into_owned());
         let B = Vector4::from_column_slice(B.as_slice());
         let (Q_u, Q_uu, Q_ux) = (R * u[k] + B.dot(&v), R + B.dot(&(V * B)), B.transpose() * V * A);

@@ -9,8 +9,9 @@
 //! the Panda's seventh joint, a secondary goal: among all positions with the hand at its goal, the one nearest to a
 //! posture.
 
+use mozzi::kinematics::{body_jacobian, forward_kinematics};
 use mozzi::nalgebra::DVector;
-use mozzi::{Model, SE3, body_jacobian, forward_kinematics};
+use mozzi::{Model, SE3};
 use mozzi_examples::{agree, row};
 use mozzi_motion::inverse_kinematics::Secondary;
 use mozzi_motion::{Goal, InverseKinematics};

@@ -5,12 +5,12 @@
 //! the wrench that it applies to its environment. Only the joints are measured. First the tool follows a motion; then
 //! it pushes against a wall with 15 N, and yields by KX_e = 𝓕.
 
-use mozzi::simulation::{Options, applied};
 use mozzi::{Vec3, Wrench};
 use mozzi_examples::agree;
 use mozzi_examples::tracking::{Arm, both_loads};
 use mozzi_motion::controllers::{Gains, Law, TaskSpace};
 use mozzi_motion::trajectories::{Hold, Reference};
+use mozzi_sim::{Options, applied};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arms = Arm::both()?;
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (start, n) = (arm.motion()?.at(0.0).theta, arm.model.n());
         let control = TaskSpace::new(&arm.model, Hold::new(&start, n), arm.tool, law, Gains::critical(n, 10.0))?;
         let input = (control, applied(arm.tool, move |_, _, _| push));
-        let held = arm.model.simulate(&start, &vec![0.0; n], input, &Options::new(2.1, 700))?;
+        let held = mozzi_sim::simulate(&arm.model, &start, &vec![0.0; n], input, &Options::new(2.1, 700))?;
         let T = |theta: &[f64]| arm.model.forward_kinematics(theta, arm.tool);
         let X = (T(held.last().theta)?.inverse() * T(&start)?).log();
         println!("{}: pushed back by 15 N, the tool yields by {:.2} mm along its axis", arm.name, 1e3 * X.v.0[2]);

@@ -5,8 +5,8 @@
 //! velocity in its own axes.
 
 use mozzi::model::State;
-use mozzi::simulation::{Options, Zero};
 use mozzi_examples::{agree, row};
+use mozzi_sim::{Options, Zero};
 use std::error::Error;
 
 const MODEL: &str = "
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // thrown upside down: the key's velocity is the world's, and so is the flight
     let thrown = model.state("thrown")?;
     let time = 0.4;
-    let flight = model.simulate(&thrown.theta, &thrown.dtheta, Zero, &Options::new(time, 400))?;
+    let flight = mozzi_sim::simulate(&model, &thrown.theta, &thrown.dtheta, Zero, &Options::new(time, 400))?;
     let found = model.forward_kinematics(flight.last().theta, stone)?.p.0;
     let expected = [1.0 - time, 0.0, 1.0 + 3.0 * time - 0.5 * 9.81 * time * time];
     agree("a throw is a parabola", &found, &expected, 1e-9);

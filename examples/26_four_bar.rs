@@ -4,8 +4,8 @@
 
 use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
 use mozzi::nalgebra::DVector;
-use mozzi::simulation::{Options, Simulation, Zero};
 use mozzi::{Description, Error, Model, SE3, ScrewAxis, Solid, SpatialInertia, Twist, Vec3};
+use mozzi_sim::{Options, Simulation, Zero};
 use std::f64::consts::FRAC_PI_2;
 
 /// Lengths of ground, crank, coupler and rocker, m; the rods have 1 kg/m.

@@ -6,10 +6,10 @@
 //! Only the three arms have motors: the torques come from constrained inverse dynamics.
 
 use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
-use mozzi::simulation::{Options, Simulation};
 use mozzi::{Description, Error, Model, SE3, SO3, ScrewAxis, Solid, SpatialInertia, Vec3};
 use mozzi_motion::controllers::{ComputedTorque, Gains};
 use mozzi_motion::trajectories::{Desired, Reference};
+use mozzi_sim::{Options, Simulation};
 use std::f64::consts::TAU;
 
 /// Radii of the ring and of the platform, lengths of an arm and of its rods, m.

@@ -3,8 +3,8 @@
 //! drives straight, with different ones along a circle, in agreement with the kinematics of a unicycle.
 
 use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
-use mozzi::simulation::{Options, Simulation, torque};
 use mozzi::{Description, Error, Model, SE3, SO3, ScrewAxis, Solid, SpatialInertia, Vec3};
+use mozzi_sim::{Options, Simulation, torque};
 use std::f64::consts::FRAC_PI_2;
 
 /// Radius of the wheels and half of their distance, m.
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let turning = RADIUS * (6.0 - 4.0) / (2.0 * HALF_TRACK);
     println!("unicycle: {speed} m/s, {turning} rad/s; the constraints: {:.6} m/s, {:.6} rad/s", dtheta[0], dtheta[2]);
     let options = Options { record_every: 500, ..Options::new(4.0, 4000) };
-    let coast = Simulation::new(options).run(&model, &theta, &dtheta, mozzi::simulation::Zero)?;
+    let coast = Simulation::new(options).run(&model, &theta, &dtheta, mozzi_sim::Zero)?;
     println!("\n  t [s]       x [m]       y [m]   heading    on the circle to [m]");
     let mut worst = 0.0_f64;
     for sample in coast.motion.samples() {

@@ -10,8 +10,8 @@
 //! difference of losses shows. L-BFGS (Nocedal 1980) descends along it. At the end: what a gradient costs, compared
 //! with its rollout.
 
-use mozzi::simulation::{Method, Rollout};
-use mozzi::{Error, FrameId, Model};
+use mozzi::{FrameId, Model};
+use mozzi_sim::{Error, Method, Rollout};
 use std::collections::VecDeque;
 use std::time::Instant;
 

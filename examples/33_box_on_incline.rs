@@ -2,15 +2,15 @@
 //! rest where the differential equation of a sliding point says. Four corners share the force: their single forces are
 //! not unique, their sum is.
 
-use mozzi::simulation::{ContactPoint, Contacts, Options, Plane, Run, Simulation, Zero};
 use mozzi::{Description, SE3, SO3, Solid, Vec3};
+use mozzi_sim::{ContactPoint, Contacts, Options, Plane, Run, Simulation, Zero};
 
 const SIZE: [f64; 3] = [0.3, 0.2, 0.1];
 const MU: f64 = 0.5;
 const G: f64 = 9.81;
 
 /// A motion on a slope, from a velocity along it, and the way of the box along the slope.
-fn on_slope(angle: f64, v: [f64; 2], duration: f64) -> Result<(Run, Vec3), mozzi::Error> {
+fn on_slope(angle: f64, v: [f64; 2], duration: f64) -> Result<(Run, Vec3), mozzi_sim::Error> {
     let model = Description::new("box").link("box", Solid::Box(SIZE).inertia(4.0)).floating().build()?;
     let frame = model.frame("box")?;
     let corner = |x: f64, y: f64| Vec3([x * 0.5 * SIZE[0], y * 0.5 * SIZE[1], -0.5 * SIZE[2]]);

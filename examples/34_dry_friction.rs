@@ -2,8 +2,8 @@
 //! of any length find the peaks, because a step ends where the mass comes to rest. Smooth methods refuse such a robot.
 
 use mozzi::model::description::{Joint, JointKind};
-use mozzi::simulation::{Method, Options, Simulation, Zero};
 use mozzi::{Description, SE3, ScrewAxis, Solid, SpatialInertia};
+use mozzi_sim::{Method, Options, Simulation, Zero};
 
 const STIFFNESS: f64 = 100.0;
 const FRICTION: f64 = 2.3;

@@ -1,10 +1,10 @@
 //! ANYmal drops on its feet, stands, and is pushed. A controller chooses torques so that the feet's forces stay within
 //! their friction cones, by a small quadratic program; the ground carries exactly its weight.
 
-use mozzi::simulation::{ContactPoint, Contacts, Options, Plane, Simulation, applied};
 use mozzi::{SE3, Vec3, Wrench};
 use mozzi_motion::controllers::{Gains, Standing};
 use mozzi_motion::trajectories::Hold;
+use mozzi_sim::{ContactPoint, Contacts, Options, Plane, Simulation, applied};
 
 const FEET: [&str; 4] = ["LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"];
 const POSE: [f64; 12] = [0.0, 0.7, -1.0, 0.0, 0.7, -1.0, 0.0, -0.7, 1.0, 0.0, -0.7, 1.0];

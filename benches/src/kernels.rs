@@ -21,8 +21,9 @@ fn kernels(criterion: &mut Criterion) {
             let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
             let inputs: Vec<Vec<&[f64]>> = states.iter().map(|state| inputs(query, state)).collect();
             let mut group = group(criterion, name, kernel);
-            for mut workspace in [Workspace::new(&model), Workspace::portable(&model)] {
-                bench(&mut group, workspace.instruction_set(), &inputs, |inputs| {
+            let ways = [("fused", Workspace::new(&model)), ("portable", Workspace::portable(&model))];
+            for (way, mut workspace) in ways {
+                bench(&mut group, way, &inputs, |inputs| {
                     let outputs = black_box(&mut outputs);
                     fast::evaluate(&query, &model, inputs, &environment, &mut workspace, outputs);
                 });

@@ -1,7 +1,7 @@
 //! The robots: two arms, a body with a head and four limbs, a long chain, and two legged robots.
 
 use mozzi::model::description::{Anchor, Constraint, Joint, JointKind};
-use mozzi::testing::Random;
+use mozzi::random::Random;
 use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 use std::path::Path;
 

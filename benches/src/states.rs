@@ -1,7 +1,7 @@
 //! The states at which everything is evaluated.
 
 use mozzi::quantities::Query;
-use mozzi::testing::Random;
+use mozzi::random::Random;
 use mozzi::{Model, SE3, Twist, Vec3};
 
 /// (θ, θ̇, θ̈, τ).

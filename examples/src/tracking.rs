@@ -2,11 +2,12 @@
 //! load that is missing in the controller's model.
 
 use crate::chart::{Curve, chart};
-use mozzi::simulation::{Input, Options};
-use mozzi::{FrameId, Model, SpatialInertia, Vec3, difference};
+use mozzi::model::difference;
+use mozzi::{FrameId, Model, SpatialInertia, Vec3};
 use mozzi_motion::Policy;
 use mozzi_motion::controllers::{Saturated, tracking_error};
 use mozzi_motion::trajectories::{Line, Profile, Reference, Timed};
+use mozzi_sim::{Input, Options};
 use std::error::Error;
 
 /// The load in the hand that the controller's model lacks, kg.
@@ -42,14 +43,14 @@ impl Arm {
     }
 
     /// Simulates the arm with a load in its hand, under a controller whose model lacks the load.
-    pub fn follow(&self, load: f64, motors: impl Input) -> Result<mozzi::Trajectory, Box<dyn Error>> {
+    pub fn follow(&self, load: f64, motors: impl Input) -> Result<mozzi_sim::Trajectory, Box<dyn Error>> {
         let mut robot = self.model.clone();
         if load > 0.0 {
             robot = robot.with_payload(self.tool, SpatialInertia::point_mass(load, Vec3([0.0, 0.0, 0.05])))?;
         }
         let motors = Saturated::new(&robot, motors, Policy::Respect);
         let start = self.motion()?.at(0.0).theta;
-        Ok(robot.simulate(&start, &vec![0.0; robot.n()], motors, &Options::new(1.8, 600))?)
+        Ok(mozzi_sim::simulate(&robot, &start, &vec![0.0; robot.n()], motors, &Options::new(1.8, 600))?)
     }
 }
 

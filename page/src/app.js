@@ -11,8 +11,8 @@ export const STEP = 0.001;
 const STATE = ["theta", "dtheta", "ddtheta", "tau"];
 
 export class App {
-  constructor(library, stage, find) {
-    Object.assign(this, { library, stage, find, robot: null, isPlaying: false, push: null, keeps: false, speed: 1, panels: [], last: null });
+  constructor(library, stage, find, friction) {
+    Object.assign(this, { library, stage, find, friction, robot: null, isPlaying: false, push: null, keeps: false, speed: 1, panels: [], last: null });
     this.settings = { motors: "off", omega: 8, zeta: 1, ground: null };
     this.history = new History(find("undo"), find("redo"), {
       now: () => ({ entry: this.entry, values: this.values, description: this.description, theta: [...this.state.theta], dtheta: [...this.state.dtheta] }),
@@ -340,7 +340,7 @@ export class App {
 
   // Puts the ground at z = 0, and a floating base onto it.
   setGround(isOn) {
-    this.settings.ground = isOn ? { friction: 0.8, restitution: 0 } : null;
+    this.settings.ground = isOn ? { friction: this.friction, restitution: 0 } : null;
     if (isOn && this.robot.isFloating) {
       this.remember();
       this.attempt(() => command(this.robot, { do: "settle" }));

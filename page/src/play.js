@@ -29,7 +29,7 @@ const library = await Library.open(find("wasm").textContent).catch((error) => {
 const entries = data.robots.map((robot) => ({ ...robot, meshes: (robot.meshes ?? []).map((mesh) => ({ ...mesh, path: mesh.name })) }));
 
 const stage = new Stage(find("scene"), find("toggles"));
-const app = new App(library, stage, find);
+const app = new App(library, stage, find, data.friction);
 const hosts = addTabs(find("tabs"), find("pages"), { joints: "Joints", numbers: "Numbers", plots: "Plots", edit: "Edit", code: "Code" }, () => app.robot && app.draw());
 app.loop = new Loop(app);
 app.record = new Record(hosts.plots, (time) => app.seek(time));

@@ -7,7 +7,7 @@ const TODO = [
   ["play", "the robot moves in real time by steps of 1 ms: Runge-Kutta of order 4, or Moreau-Jean's method if there is dry friction or ground"],
   ["motors", "off; g(θ); g(θ) + K_p e + K_d ė; M(θ)(K_p e + K_d ė) + h(θ, θ̇), with K_p = ω² I and K_d = 2ω I: of PD control I is the inertia that a joint moves, of computed torque 1. Sliders set the target while it plays"],
   ["drag", "paused: the joint under the pointer, with Shift the end effector by inverse kinematics. Playing: a spring pulls the robot, with Shift the target of the motors follows"],
-  ["ground", "the plane z = 0, with friction 0.8; collision shapes without meshes touch it, else the origins of the last links"],
+  ["ground", "the plane z = 0, with friction as in `mozzi simulate --ground`; collision shapes without meshes touch it, else the origins of the last links"],
 ];
 const KEYS = [["space", "play or pause"], ["Home", "back to the start"], ["Ctrl-Z, Ctrl-Shift-Z", "undo, redo"], ["0", "all of the robot in sight"], ["o", "open files"], ["d", "light or dark"], ["p", "save a picture"], ["Esc", "close a message"], ["?", "this page"]];
 

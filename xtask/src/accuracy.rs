@@ -1,5 +1,5 @@
 //! Every quantity in every way, and other libraries, against numbers of 31 and 71 digits: the program of
-//! `mozzi-accuracy`.
+//! `mozzi-testing`.
 
 use crate::command;
 use crate::oracles;
@@ -11,7 +11,7 @@ use crate::workspace::Workspace;
 const PAGE: &str = "docs/accuracy.md";
 
 pub fn run(workspace: &Workspace, options: &[&str]) -> Outcome {
-    let mut cargo = workspace.cargo(&["run", "--release", "--package", "mozzi-accuracy", "--"]);
+    let mut cargo = workspace.cargo(&["run", "--release", "--package", "mozzi-testing", "--"]);
     cargo.args(options);
     let python = venv::python(workspace);
     if python.is_file() {

@@ -1,10 +1,13 @@
-//! Limits on the length of README and DESIGN, in words as `wc -w` counts them.
+//! Limits on the length of README and DESIGN, in words as `wc -w` counts them; the places that ARCHITECTURE.md names.
 
 use crate::report::Outcome;
 use crate::workspace::Workspace;
 
 /// A document and its largest number of words.
 const LIMITS: [(&str, usize); 2] = [("README.md", 1200), ("DESIGN.md", 2500)];
+
+/// The page with the map of the house.
+const MAP: &str = "ARCHITECTURE.md";
 
 /// Fails if a document is too long: longer text belongs on a page of docs/.
 pub fn check(workspace: &Workspace) -> Outcome {
@@ -26,13 +29,42 @@ pub fn check(workspace: &Workspace) -> Outcome {
     }
 }
 
+/// Fails if a function that ARCHITECTURE.md names is not in its file: `` `FILE.rs`, `function` ``.
+pub fn check_places(workspace: &Workspace) -> Outcome {
+    let map = match std::fs::read_to_string(workspace.path(MAP)) {
+        Ok(text) => text,
+        Err(error) => return Outcome::Failed(format!("{MAP}: {error}")),
+    };
+    let places = places(&map);
+    let is_lost = |(file, function): &&(&str, &str)| {
+        let text = std::fs::read_to_string(workspace.path(file)).unwrap_or_default();
+        !text.contains(&format!("fn {function}"))
+    };
+    match places.iter().find(is_lost) {
+        Some((file, function)) => Outcome::Failed(format!("{MAP}: {file} has no function {function}")),
+        None => Outcome::Passed(format!("{} places of {MAP}", places.len())),
+    }
+}
+
+/// Each file with the function after it.
+fn places(text: &str) -> Vec<(&str, &str)> {
+    let quoted: Vec<&str> = text.split('`').collect();
+    let pairs = quoted.windows(3).filter(|three| three[0].ends_with(".rs") && three[1].trim() == ",");
+    pairs.map(|three| (three[0], three[2])).collect()
+}
+
 fn words(text: &str) -> usize {
     text.split_whitespace().count()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::words;
+    use super::{places, words};
+
+    #[test]
+    fn places_are_found() {
+        assert_eq!(places("in `a/b.rs`, `f`: x, `c.rs` and\n`d.rs`,\n`g`"), [("a/b.rs", "f"), ("d.rs", "g")]);
+    }
 
     #[test]
     fn words_are_counted_as_wc_does() {

@@ -1,5 +1,6 @@
 //! The project's own rules for `crates/*/src`, tests left out: no unwrap, nothing unfinished, unsafe in known places.
 
+use crate::module_order::above;
 use crate::report::Outcome;
 use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
@@ -79,7 +80,7 @@ fn is_library_code(name: &str) -> bool {
 }
 
 /// The line and the rule of each violation.
-fn broken_rules(name: &str, source: &str) -> Vec<(usize, &'static str)> {
+fn broken_rules(name: &str, source: &str) -> Vec<(usize, String)> {
     let code = without_tests(&code_only(source));
     let unsafe_allowed = UNSAFE_ALLOWED.iter().any(|start| name.starts_with(start));
     let mut broken = Vec::new();
@@ -90,7 +91,12 @@ fn broken_rules(name: &str, source: &str) -> Vec<(usize, &'static str)> {
             (has_word(line, "unimplemented!"), "unimplemented!: finish it"),
             (!unsafe_allowed && has_word(line, "unsafe"), "unsafe: only in dispatch, JIT and bindings"),
         ];
-        broken.extend(rules.into_iter().filter(|(is_broken, _)| *is_broken).map(|(_, rule)| (index + 1, rule)));
+        broken.extend(
+            rules.into_iter().filter(|(is_broken, _)| *is_broken).map(|(_, rule)| (index + 1, rule.to_owned())),
+        );
+        broken.extend(
+            above(name, line).map(|module| (index + 1, format!("uses `{module}`, which is above its own module"))),
+        );
     }
     broken
 }

@@ -24,6 +24,7 @@ mod inlining;
 mod licences;
 mod main_job;
 mod metadata;
+mod module_order;
 mod nightly;
 mod no_std;
 mod oracles;
@@ -94,7 +95,7 @@ usage: cargo xtask COMMAND
           --of-tests                                  package the build of `test`, as `test` does it
   weigh   CPU seconds of the main job's cold build by package, sizes of what is published, into docs/weight.md
           --main-job                                  the main job alone, to standard output
-  api     list the public items of the published crates in docs/api; `check` compares
+  api     list and count the public items of the published crates in target/api/items
   release --dry-run VERSION: version, changelog, metadata, features, public items; packages every crate that is published,
           and builds and runs their documentation's examples, a first program and the command line from the packages alone
   dist    archives of the C and C++ library for Linux into target/dist, for glibc 2.28 or newer; needs cmake
@@ -233,6 +234,7 @@ fn check(workspace: &Workspace, which: Check) -> ExitCode {
     report.step("advisories", || advisories::check(workspace));
     report.step("house rules", || house_rules::check(workspace));
     report.step("lengths of documents", || documents::check(workspace));
+    report.step("places of the map", || documents::check_places(workspace));
     if which == Check::Everything {
         builds(workspace, &mut report);
     }
@@ -251,7 +253,6 @@ fn builds(workspace: &Workspace, report: &mut Report) {
         let mut doc = workspace.cargo(&["doc", "--workspace", "--no-deps", "--lib"]);
         command::outcome(doc.env("RUSTDOCFLAGS", "-Dwarnings"))
     });
-    report.step("public items", || release::api::check(workspace));
 }
 
 /// A command that adds its steps itself.

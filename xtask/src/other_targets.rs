@@ -22,7 +22,18 @@ pub fn aarch64(workspace: &Workspace) -> Outcome {
     if let Some(compiler) = std::env::var_os(LINKER) {
         cargo.env("CC", compiler); // tests compile emitted C
     }
-    command::outcome(cargo.args(["-p", "mozzi", "-p", "mozzi-engine", "-p", "mozzi-urdf", "-p", "mozzi-motion"]))
+    command::outcome(cargo.args([
+        "-p",
+        "mozzi",
+        "-p",
+        "mozzi-sim",
+        "-p",
+        "mozzi-engine",
+        "-p",
+        "mozzi-urdf",
+        "-p",
+        "mozzi-motion",
+    ]))
 }
 
 /// What users of these systems compile. Nothing is linked or run, for want of their linkers and their machines.

@@ -7,9 +7,9 @@ use crate::simulation::{BRAKE, STEP, STEPS};
 use libloading::{Library, Symbol};
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, JointKind};
 use mozzi::quantities::Query;
-use mozzi::simulation::Method;
 use mozzi::{Description, Model, SE3};
 use mozzi_benches::States;
+use mozzi_sim::Method;
 use std::ffi::{CStr, CString, c_char, c_int};
 
 /// The library.

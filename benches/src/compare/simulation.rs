@@ -6,9 +6,9 @@ use crate::peer::Peer;
 use crate::race::{LARGEST_DIFFERENCE, Time, of_runs};
 use mozzi::Model;
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{Method, Options, torque};
 use mozzi_benches::States;
 use mozzi_engine::{Compiled, compile};
+use mozzi_sim::{Method, Options, torque};
 use std::time::{Duration, Instant};
 
 pub const STEPS: usize = 1000;
@@ -48,7 +48,7 @@ fn by_mozzi<'a>(model: &'a Model, robot: Option<&'a Compiled>) -> Run<'a> {
         let options = Options { method, record_every: STEPS, ..Options::new(STEPS as f64 * STEP, STEPS) };
         let motion = match robot {
             Some(robot) => robot.simulate(theta, dtheta, brake, &options),
-            None => model.simulate(theta, dtheta, brake, &options),
+            None => mozzi_sim::simulate(&model, theta, dtheta, brake, &options),
         };
         let motion = motion.ok()?;
         theta.copy_from_slice(motion.last().theta);

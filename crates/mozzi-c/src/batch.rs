@@ -6,9 +6,9 @@ use crate::program::ProgramHandle;
 use crate::quantity::{CSubject, declaration};
 use crate::robot::{Frame, ModelHandle, Robot};
 use crate::status::{Outcome, Status, guard, of_batch, refuse};
-use mozzi::simulation::Method;
 use mozzi::{Environment, FrameId, Vec3};
 use mozzi_engine::{Batch, BatchEnvironment};
+use mozzi_sim::Method;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 

@@ -5,9 +5,9 @@ use crate::border::{check_finite, slice};
 use crate::handle::{borrow, check_pointer};
 use crate::program::ProgramHandle;
 use crate::robot::ModelHandle;
-use crate::status::{Outcome, Status, guard, of_model, refuse};
-use mozzi::simulation::{Ending, Friction, Input, Options, Policy, Recorder, Sample, Simulation};
-use mozzi::{Error, Model, Vec3};
+use crate::status::{Outcome, Status, guard, of_simulation, refuse};
+use mozzi::{Model, Vec3};
+use mozzi_sim::{Ending, Error, Friction, Input, Options, Policy, Recorder, Sample, Simulation};
 use std::cell::Cell;
 use std::ffi::c_void;
 use std::ops::ControlFlow;
@@ -109,7 +109,7 @@ impl Input for Caller<'_> {
         }
         self.failed.set(true);
         let (found, expected) = (format!("{status} at t = {t} s"), "0");
-        Err(Error::BadArgument { what: "the torque function's result", found, expected })
+        Err(mozzi::Error::BadArgument { what: "the torque function's result", found, expected }.into())
     }
 }
 
@@ -200,7 +200,7 @@ pub unsafe extern "C" fn mozzi_simulate(
         let found = run(&simulation, &robot.model, theta, dtheta, caller(), caller());
         let found = found.map_err(|error| match failed.get() {
             true => crate::status::failure(Status::CALLBACK, format_args!("{error}")),
-            false => of_model(&error),
+            false => of_simulation(&error),
         })?;
         let (complete, stops) = (found.complete.into(), found.stops.len());
         let constraint_residual = found.closing.residual;

@@ -86,7 +86,7 @@ pub unsafe extern "C" fn mozzi_integrate(
         check_finite(dtheta, "dtheta")?;
         check_finite(&[h], "h")?;
         check_apart("theta", (theta.cast_const(), robot.model.nq()), "dtheta", dtheta)?;
-        mozzi::integrate(&robot.model, slice_mut(theta, robot.model.nq(), "theta")?, dtheta, h);
+        mozzi::model::integrate(&robot.model, slice_mut(theta, robot.model.nq(), "theta")?, dtheta, h);
         Ok(())
     })
 }
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn mozzi_difference(
         let output = (difference.cast_const(), robot.model.n());
         check_apart("difference", output, "theta0", theta0)?;
         check_apart("difference", output, "theta1", theta1)?;
-        mozzi::difference(&robot.model, theta0, theta1, slice_mut(difference, robot.model.n(), "difference")?);
+        mozzi::model::difference(&robot.model, theta0, theta1, slice_mut(difference, robot.model.n(), "difference")?);
         Ok(())
     })
 }

@@ -133,7 +133,21 @@ fn status_of(error: &mozzi::Error) -> Status {
         }
         E::NoEndEffector { .. } => Status::NOT_FOUND,
         E::SingularMassMatrix { .. } | E::SingularTask { .. } => Status::SINGULAR,
-        E::Unreachable { .. } | E::OpenStart { .. } | E::Opened { .. } | E::Underactuated { .. } => Status::CONSTRAINT,
+        E::Unreachable { .. } | E::Underactuated { .. } => Status::CONSTRAINT,
+        _ => Status::INVALID_ARGUMENT,
+    }
+}
+
+/// An error of a simulation.
+pub fn of_simulation(error: &mozzi_sim::Error) -> Status {
+    failure(status_of_simulation(error), format_args!("{error}"))
+}
+
+fn status_of_simulation(error: &mozzi_sim::Error) -> Status {
+    use mozzi_sim::Error as E;
+    match error {
+        E::Model(error) => status_of(error),
+        E::OpenStart { .. } | E::Opened { .. } => Status::CONSTRAINT,
         E::Diverged { .. } | E::Stalled { .. } | E::NoConvergence { .. } => Status::DIVERGED,
         _ => Status::INVALID_ARGUMENT,
     }
@@ -144,7 +158,8 @@ pub fn of_batch(error: &mozzi_engine::Error) -> Status {
     use mozzi_engine::Error as E;
     let status = match error {
         E::WrongLength { .. } | E::IncompleteState { .. } => Status::WRONG_LENGTH,
-        E::State { source, .. } | E::Model(source) => status_of(source),
+        E::Model(source) => status_of(source),
+        E::State { source, .. } | E::Simulation(source) => status_of_simulation(source),
         _ => Status::INVALID_ARGUMENT,
     };
     failure(status, format_args!("{error}"))
@@ -154,6 +169,7 @@ pub fn of_batch(error: &mozzi_engine::Error) -> Status {
 pub fn of_motion(error: &mozzi_motion::Error) -> Status {
     let status = match error {
         mozzi_motion::Error::Model(error) => status_of(error),
+        mozzi_motion::Error::Simulation(error) => status_of_simulation(error),
         _ => Status::NOT_REACHED,
     };
     failure(status, format_args!("{error}"))

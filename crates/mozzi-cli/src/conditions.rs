@@ -4,7 +4,7 @@ use crate::failure::{self, Failure, Result};
 use crate::text::scalar;
 use clap::Args;
 use mozzi::Model;
-use mozzi::simulation::{Event, Occurrence};
+use mozzi_sim::{Event, Occurrence};
 
 /// At most this many events are listed individually.
 const LISTED: usize = 12;

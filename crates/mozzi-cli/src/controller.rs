@@ -1,124 +1,232 @@
-//! `--controller FILE.json`: the controller, its gains, and its own model of the robot.
+//! `--controller`: one by its name, with gains by a time constant, or a JSON file with its gains and its own model of
+//! the robot.
 
-use crate::failure::{Failure, Result};
+use crate::failure::{self, Failure, Result};
 use crate::json_file;
 use crate::robot::RobotArguments;
-use mozzi::Model;
-use mozzi::simulation::Input;
-use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
+use mozzi::{FrameId, Model, SE3, Task, TaskFrame};
+use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, Standing, TaskSpace};
 use mozzi_motion::trajectories::Reference;
-use mozzi_urdf::json::{File, Step, unknown_key};
+use mozzi_sim::{ContactPoint, Contacts, Input, PlaneMotion};
+use mozzi_urdf::json::{At, File, Object};
 use serde_json::Value;
+use std::path::Path;
 
-/// A controller's file, and its robot if the file names one.
+/// A controller, and its robot if its file names one.
 pub struct Controller {
-    file: File,
+    /// None if all gains follow from the time constant.
+    file: Option<File>,
     kind: String,
+    /// 1/ω: errors fall as in ë + 2ω ė + ω² e = 0, s.
+    response: f64,
     /// The controller's own model, if it differs from the simulated robot.
     believed: Option<Model>,
 }
 
-/// Kinds of controllers and their entries; all of them accept `model`.
-const KINDS: [(&str, &[&str]); 4] = [
-    ("pd-gravity", &["p", "d"]),
-    ("computed-torque", &["p", "d"]),
-    ("task-space", &["frame", "p", "d", "posture_p", "posture_d"]),
-    ("impedance", &["frame", "stiffness", "damping", "posture_p", "posture_d"]),
+/// Kinds of controllers and the keys of their files; without a frame it is the end effector, without gains of the posture
+/// these follow from the time constant.
+const KINDS: [(&str, Object); 5] = [
+    ("pd-gravity", Object::of(&["controller", "p", "d"]).optional(&["model"])),
+    ("computed-torque", Object::of(&["controller", "p", "d"]).optional(&["model"])),
+    ("task-space", Object::of(&["controller", "p", "d"]).optional(OF_FRAME)),
+    ("impedance", Object::of(&["controller", "stiffness", "damping"]).optional(OF_FRAME)),
+    ("standing", Object::of(&["controller"]).optional(&["model"])),
+];
+const OF_FRAME: &[&str] = &["model", "frame", "posture_p", "posture_d"];
+
+/// What errors call the file.
+const WHOLE: &str = "the controller's file";
+
+/// Other names of kinds.
+const ALIASES: [(&str, &str); 4] = [
+    ("pd", "pd-gravity"),
+    ("pd_gravity", "pd-gravity"),
+    ("ctc", "computed-torque"),
+    ("computed_torque", "computed-torque"),
 ];
 
+/// Feet of `standing` are the contact points this near to the ground at the start, m.
+const STANDS: f64 = 2e-3;
+/// The quadratic program of `standing` takes at most so many.
+const FEET: usize = 32;
+
 impl Controller {
-    pub fn read(name: &str, robot: &RobotArguments) -> Result<Self> {
+    pub fn read(name: &str, response: f64, robot: &RobotArguments) -> Result<Self> {
+        if !(response > 0.0 && response.is_finite()) {
+            return Err(Failure::wrong(format!("--response is {response} s, expected a positive time constant")));
+        }
+        let alias = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, kind)| kind);
+        if KINDS.iter().any(|(kind, _)| *kind == alias) && !Path::new(name).is_file() {
+            return Ok(Controller { file: None, kind: alias.to_string(), response, believed: None });
+        }
+        let names = KINDS.map(|(kind, _)| kind).join(", ");
+        if !name.contains(['.', '/', '\\']) && !Path::new(name).exists() {
+            return Err(Failure::wrong(format!("--controller is `{name}`, expected one of {names}, or a JSON file")));
+        }
         let file = json_file::read(name)?;
-        let whole = |sentence: String| Failure::from(file.wrong(&[], sentence));
-        let wrong = |key: &str, sentence: String| Failure::from(file.wrong(&[Step::Key(key)], sentence));
-        let Value::Object(entries) = &file.value else { return Err(whole("is not a JSON object".into())) };
-        let kinds = KINDS.map(|(kind, _)| format!("`{kind}`")).join(", ");
-        let kind = match entries.get("controller") {
-            Some(Value::String(kind)) => kind.as_str(),
-            Some(other) => return Err(wrong("controller", format!("controller: is {other}, expected one of {kinds}"))),
-            None => return Err(whole(format!("`controller` is missing, expected one of {kinds}"))),
-        };
-        let Some((kind, needed)) = KINDS.iter().find(|(known, _)| *known == kind) else {
-            return Err(wrong("controller", format!("controller: is `{kind}`, expected one of {kinds}")));
-        };
-        let known = [&["controller"], *needed, &["model"]].concat();
-        if let Some(unknown) = entries.keys().find(|key| !known.contains(&key.as_str())) {
-            return Err(wrong(unknown, unknown_key(unknown, &format!("`{kind}`"), &known)));
-        }
-        if let Some(missing) = needed.iter().find(|key| !entries.contains_key(**key)) {
-            return Err(whole(format!("`{missing}` is missing; `{kind}` needs it")));
-        }
-        let believed = match entries.get("model") {
-            None => None,
-            Some(Value::String(name)) => Some(robot.load_other(name).map_err(|failure| match failure {
-                Failure::Wrong(sentence) => wrong("model", format!("model: {sentence}")),
-                Failure::Load(error) if error.diagnostics().is_empty() => wrong("model", format!("model: {error}")),
-                other => other, // points into the robot's own file
-            })?),
-            Some(other) => {
-                return Err(wrong("model", format!("model: is {other}, expected a file or an embedded robot")));
-            }
-        };
-        Ok(Controller { kind: kind.to_string(), believed, file })
+        let root = At::root(&file, WHOLE);
+        Object::of(&["controller"]).check_required(&root)?;
+        let kind = root.get("controller").word(&KINDS.map(|(kind, _)| kind))?;
+        KINDS.iter().filter(|(known, _)| *known == kind).try_for_each(|(_, keys)| keys.check_all(&root))?;
+        let at = root.get("model");
+        let believed = at.some(At::text)?.map(|name| Self::believed(&at, &name, robot)).transpose()?;
+        Ok(Controller { kind: kind.to_string(), believed, response, file: Some(file) })
     }
 
-    /// For the page: "computed-torque of arm.json".
+    /// The controller's own model. Its errors have no words of its file: the controller's file may name any file.
+    fn believed(at: &At, name: &str, robot: &RobotArguments) -> Result<Model> {
+        let path = Path::new(name);
+        if path.exists() && !path.is_file() {
+            return Ok(at.wrong("a regular file, or an embedded robot")?);
+        }
+        let sentence = match robot.load_other(name) {
+            Ok(model) => return Ok(model),
+            Err(Failure::Wrong(sentence)) => sentence,
+            Err(Failure::Load(error)) => match error.errors().next() {
+                None => error.to_string(),
+                Some(first) => {
+                    let (count, line, code) = (error.errors().count(), first.line(), first.code());
+                    let errors = if count == 1 { "1 error".to_string() } else { format!("{count} errors") };
+                    format!("{name} is refused: {errors}, first {code} in line {line}; `mozzi check {name}` shows them")
+                }
+            },
+            Err(other) => return Err(other),
+        };
+        Ok(at.error(format_args!("model: {sentence}"))?)
+    }
+
+    /// For the page: "computed-torque of arm.json", "computed-torque, response 0.1 s".
     pub fn name(&self) -> String {
-        format!("{} of {}", self.kind, self.file.name)
+        match &self.file {
+            Some(file) => format!("{} of {}", self.kind, file.name),
+            None => format!("{}, response {} s", self.kind, self.response),
+        }
     }
 
     /// Motors that follow a reference, with the model of the file's robot or else of this one.
-    pub fn follow<'a>(&'a self, robot: &'a Model, reference: &'a dyn Reference) -> Result<Box<dyn Input + 'a>> {
+    pub fn follow<'a>(
+        &'a self,
+        robot: &'a Model,
+        reference: &'a dyn Reference,
+        contacts: &Contacts,
+    ) -> Result<Box<dyn Input + 'a>> {
         let model = self.believed.as_ref().unwrap_or(robot);
         if model.n() != robot.n() || model.nq() != robot.nq() {
             let (found, expected) = (model.n(), robot.n());
-            return Err(self.wrong(
-                "model",
-                format!("the robot has {found} velocities, expected {expected}, the number of the simulated robot"),
-            ));
+            let place = self.place();
+            return Err(Failure::wrong(format!(
+                "{place}: model: the robot has {found} velocities, expected {expected}, the number of the simulated robot"
+            )));
         }
-        // one gain for each velocity of a joint; a floating base has no motors
-        let base = model.base().velocities();
-        let list = |key: &str| Ok::<_, Failure>([vec![0.0; base], self.list(key, model.n() - base)?].concat());
-        let gains = |p: &str, d: &str| Ok::<_, Failure>(Gains { p: list(p)?, d: list(d)? });
-        let place = |error: mozzi_motion::Error| Failure::wrong(format!("{}: {error}", self.file.name));
+        let place = |error: mozzi_motion::Error| Failure::wrong(format!("{}: {error}", self.place()));
+        let start = reference.at(0.0).theta;
         Ok(match self.kind.as_str() {
-            "pd-gravity" => Box::new(PdGravity::new(model, reference, gains("p", "d")?).map_err(place)?),
-            "computed-torque" => Box::new(ComputedTorque::new(model, reference, gains("p", "d")?).map_err(place)?),
+            "pd-gravity" => {
+                let M = model.mass_matrix(&start)?;
+                let inertias: Vec<f64> = (0..model.n()).map(|j| M[(j, j)]).collect();
+                Box::new(
+                    PdGravity::new(model, reference, self.gains(model, "p", "d", Some(&inertias))?).map_err(place)?,
+                )
+            }
+            "computed-torque" => {
+                Box::new(ComputedTorque::new(model, reference, self.gains(model, "p", "d", None)?).map_err(place)?)
+            }
+            "standing" => {
+                let (feet, ground) = feet(model, contacts, &start)?;
+                let gains = Gains::critical(model.n(), 1.0 / self.response);
+                Box::new(Standing::new(model, reference, gains, feet, ground).map_err(place)?)
+            }
             kind => {
-                let law = match kind {
-                    "task-space" => Law::Acceleration { p: self.six("p")?, d: self.six("d")? },
-                    _ => Law::Impedance { stiffness: self.six("stiffness")?, damping: self.six("damping")? },
+                let frame = self.frame(model)?;
+                let [p, d] = [self.response.powi(-2), 2.0 / self.response];
+                let law = match (kind, &self.file) {
+                    ("task-space", Some(_)) => Law::Acceleration { p: self.six("p")?, d: self.six("d")? },
+                    ("task-space", None) => Law::Acceleration { p: [p; 6], d: [d; 6] },
+                    (_, Some(_)) => Law::Impedance { stiffness: self.six("stiffness")?, damping: self.six("damping")? },
+                    (_, None) => {
+                        let task = Task::all(frame, TaskFrame::Body);
+                        let still = vec![0.0; model.n()];
+                        let Lambda = model.task_space_dynamics(&start, &still, task, &model.environment());
+                        let Lambda = Lambda.map_err(|error| {
+                            Failure::wrong(format!(
+                                "--controller impedance: {error}; another --theta, or computed-torque, controls the joints"
+                            ))
+                        })?;
+                        let inertias: [f64; 6] = std::array::from_fn(|k| Lambda.Lambda[(k, k)]);
+                        Law::Impedance { stiffness: inertias.map(|m| p * m), damping: inertias.map(|m| d * m) }
+                    }
                 };
-                let posture = gains("posture_p", "posture_d")?;
-                Box::new(TaskSpace::new(model, reference, self.frame(model)?, law, posture).map_err(place)?)
+                let posture = self.gains(model, "posture_p", "posture_d", None)?;
+                Box::new(TaskSpace::new(model, reference, frame, law, posture).map_err(place)?)
             }
         })
     }
 
-    fn wrong(&self, key: &str, sentence: impl std::fmt::Display) -> Failure {
-        self.file.wrong(&[Step::Key(key)], format!("{key}: {sentence}")).into()
+    /// Gains of each velocity of a joint, of the file or by the time constant, times the joints' inertias if the gains
+    /// are on torques; a floating base has no motors.
+    fn gains(&self, model: &Model, p: &str, d: &str, inertias: Option<&[f64]>) -> Result<Gains> {
+        let base = model.base().velocities();
+        let list = |key: &str, default: f64| -> Result<Vec<f64>> {
+            let joints = match self.entry(key) {
+                Some(at) => list(&at, model.n() - base)?,
+                None => (base..model.n()).map(|j| default * inertias.map_or(1.0, |inertias| inertias[j])).collect(),
+            };
+            Ok([vec![0.0; base], joints].concat())
+        };
+        Ok(Gains { p: list(p, self.response.powi(-2))?, d: list(d, 2.0 / self.response)? })
     }
 
-    fn frame(&self, model: &Model) -> Result<mozzi::FrameId> {
-        match &self.file.value["frame"] {
-            Value::String(name) => model.frame(name).map_err(|error| self.wrong("frame", error)),
-            other => Err(self.wrong("frame", format_args!("is {other}, expected the name of a frame"))),
-        }
+    /// The file's entry of this key, if there is one.
+    fn entry<'s>(&'s self, key: &'s str) -> Option<At<'s>> {
+        let file = self.file.as_ref()?;
+        file.value.get(key)?;
+        Some(At::root(file, WHOLE).get(key))
     }
 
-    /// One number for all, or a list.
-    fn list(&self, key: &str, count: usize) -> Result<Vec<f64>> {
-        let value = &self.file.value[key];
-        let wrong = || self.wrong(key, format_args!("is {value}, expected a number, or a list of {count}"));
-        match value {
-            Value::Array(list) if list.len() == count => list.iter().map(|x| x.as_f64().ok_or_else(wrong)).collect(),
-            other => Ok(vec![other.as_f64().ok_or_else(wrong)?; count]),
+    /// The file, or the flag.
+    fn place(&self) -> String {
+        self.file.as_ref().map_or_else(|| format!("--controller {}", self.kind), |file| file.name.clone())
+    }
+
+    /// The frame of the file, or the end effector.
+    fn frame(&self, model: &Model) -> Result<FrameId> {
+        match self.entry("frame") {
+            None => Ok(model.end_effector()?),
+            Some(at) => Ok(model.frame(&at.text()?).or_else(|why| at.error(format_args!("frame: {why}")))?),
         }
     }
 
     fn six(&self, key: &str) -> Result<[f64; 6]> {
-        let list = self.list(key, 6)?;
+        let list = self.entry(key).map_or_else(|| Ok(vec![0.0; 6]), |at| list(&at, 6))?;
         Ok(std::array::from_fn(|k| list[k]))
     }
+}
+
+/// One number for all, or a list.
+fn list(at: &At, count: usize) -> Result<Vec<f64>> {
+    Ok(match at.value {
+        Value::Number(_) => vec![at.number()?; count],
+        Value::Array(list) if list.len() == count => at.numbers()?,
+        _ => at.wrong(format_args!("a number, or a list of {count}"))?,
+    })
+}
+
+/// The contact points that are on the ground at the start, and the ground.
+fn feet(model: &Model, contacts: &Contacts, theta: &[f64]) -> Result<(Vec<ContactPoint>, SE3)> {
+    let needs = "--controller standing: the robot stands on no plane, expected --ground and a start on it";
+    let Some(plane) = contacts.planes.first() else { return Err(Failure::wrong(needs)) };
+    let PlaneMotion::Fixed(ground) = &plane.motion else {
+        return Err(Failure::wrong("--controller standing: the first plane moves, expected a plane at rest"));
+    };
+    let gaps = contacts.gaps(model, 0.0, theta);
+    let near = |k: &usize| gaps.get(k * contacts.planes.len()).is_some_and(|gap| *gap < STANDS);
+    let standing: Vec<usize> = (0..contacts.points.len()).filter(near).collect();
+    if standing.is_empty() {
+        return Err(Failure::wrong(needs));
+    }
+    let step = standing.len().div_ceil(FEET);
+    if step > 1 {
+        failure::note(&format!("--controller standing: every {step}th of {} contact points is a foot", standing.len()));
+    }
+    Ok((standing.into_iter().step_by(step).map(|k| contacts.points[k].clone()).collect(), *ground))
 }

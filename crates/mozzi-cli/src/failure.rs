@@ -66,6 +66,12 @@ impl From<mozzi::Error> for Failure {
     }
 }
 
+impl From<mozzi_sim::Error> for Failure {
+    fn from(error: mozzi_sim::Error) -> Self {
+        Failure::Wrong(error.to_string())
+    }
+}
+
 impl From<mozzi_engine::Error> for Failure {
     fn from(error: mozzi_engine::Error) -> Self {
         Failure::Wrong(error.to_string())

@@ -1,8 +1,9 @@
 //! Goals of the end effector: by flags, or tables of poses in CSV files with columns x y z of the origin and qw qx qy
 //! qz of the orientation, in {s}.
 
+use crate::angles::question;
 use crate::failure::{Failure, Result};
-use crate::numbers::{array, number};
+use crate::numbers::{angles, array, number, wrong_number};
 use crate::text_table::TextTable;
 use clap::Args;
 use mozzi::{SE3, SO3, Vec3};
@@ -13,13 +14,13 @@ const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "x", "y", "z"];
 #[derive(Args, Debug, Default)]
 pub struct GoalArguments {
     /// Desired position of the frame's origin in {s}, m
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, aliases = ["xyz", "pos"], value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub position: Option<String>,
     /// Desired orientation: roll, pitch, yaw about the axes of {s}, as in URDF, rad
     #[arg(long, value_name = "R,P,Y", allow_hyphen_values = true)]
     pub rpy: Option<String>,
     /// Desired orientation as a unit quaternion
-    #[arg(long, value_name = "W,X,Y,Z", allow_hyphen_values = true, conflicts_with = "rpy")]
+    #[arg(long, alias = "quat", value_name = "W,X,Y,Z", allow_hyphen_values = true, conflicts_with = "rpy")]
     pub quaternion: Option<String>,
 }
 
@@ -29,7 +30,11 @@ impl GoalArguments {
         let position = self.position.as_deref().map(|text| array("--position", text, ["x", "y", "z"])).transpose()?;
         let R = match (&self.rpy, &self.quaternion) {
             (Some(text), _) => {
-                let [roll, pitch, yaw] = array("--rpy", text, ["roll", "pitch", "yaw"])?;
+                let found = angles("--rpy", text, &[true; 3])?;
+                let [roll, pitch, yaw] = found[..] else {
+                    return Err(wrong_number("--rpy", found.len(), &["roll", "pitch", "yaw"]));
+                };
+                question("--rpy", text, &found, &[true; 3]);
                 Some(SO3::from_rpy(roll, pitch, yaw))
             }
             (None, Some(text)) => {

@@ -5,11 +5,10 @@ use crate::json_file;
 use crate::numbers::number;
 use crate::robot::RobotArguments;
 use clap::Args;
-use mozzi::simulation::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use mozzi::{Model, SE3, Vec3};
+use mozzi_sim::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use mozzi_urdf::geometry::{FRICTION, Geometry, Shape, contact_points, geometry_with};
-use mozzi_urdf::json::Step;
-use serde_json::Value;
+use mozzi_urdf::json::{At, Object, Read};
 use std::path::Path;
 
 #[derive(Args, Debug, Default)]
@@ -64,10 +63,16 @@ impl GroundArguments {
         }
         let (count, planes) = (found.points.len(), found.planes.len());
         failure::note(&format!(
-            "--ground: {count} contact points, {planes} plane{}",
+            "{}: {count} contact points, {planes} plane{}",
+            self.flag(),
             if planes == 1 { "" } else { "s" }
         ));
         Ok(found)
+    }
+
+    /// The flag of messages.
+    pub fn flag(&self) -> &'static str {
+        if self.contacts.is_some() { "--contacts" } else { "--ground" }
     }
 
     /// μ, if it is given, and e.
@@ -94,7 +99,7 @@ impl GroundArguments {
             return self.contact.iter().map(|name| of_frame(name)).collect();
         }
         let found = contact_points(model, shapes, Path::new(&robot.model), None, (given, restitution));
-        found.left_out.iter().for_each(|reason| failure::note(&format!("--ground: {reason}")));
+        found.left_out.iter().for_each(|reason| failure::note(&format!("{}: {reason}", self.flag())));
         if !found.points.is_empty() {
             return Ok(found.points);
         }
@@ -103,7 +108,8 @@ impl GroundArguments {
         let ends: Vec<&str> = description.links.iter().map(|link| &*link.name).filter(|name| is_end(name)).collect();
         let listed = ends.join(", ");
         failure::note(&format!(
-            "--ground: the robot has no collision shapes; the origins of its last links touch: {listed}"
+            "{}: the robot has no collision shapes; the origins of its last links touch: {listed}",
+            self.flag()
         ));
         ends.into_iter().map(of_frame).collect()
     }
@@ -116,7 +122,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Moves a floating base up or down, so that its lowest contact point is on the plane that is nearest; a start that was
 /// given is lifted out of the ground only.
-pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64], is_own: bool) -> Result<()> {
+pub fn settle(flag: &str, model: &Model, contacts: &Contacts, theta: &mut [f64], is_own: bool) -> Result<()> {
     let gaps = contacts.gaps(model, 0.0, theta);
     let Some((k, &lowest)) = gaps.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { return Ok(()) };
     if !is_own && lowest >= -ROUNDING {
@@ -126,102 +132,64 @@ pub fn settle(model: &Model, contacts: &Contacts, theta: &mut [f64], is_own: boo
         theta[6] -= lowest;
         let (z, depth) = (theta[6], -lowest);
         failure::note(&match is_own {
-            true => format!("--ground: the base starts at z = {z:.6} m, where its lowest contact point touches"),
-            false => format!(
-                "--ground: the base starts at z = {z:.6} m, {depth:.6} m higher than given: it was in the ground"
-            ),
+            true => format!("{flag}: the base starts at z = {z:.6} m, where its lowest contact point touches"),
+            false => {
+                format!("{flag}: the base starts at z = {z:.6} m, {depth:.6} m higher than given: it was in the ground")
+            }
         });
         return Ok(());
     }
     let link = model.frame_name(contacts.points[k / contacts.planes.len()].frame);
     let remedy =
         if model.is_floating() { "; a start may be 5 cm deep" } else { "; its base is fixed, --floating frees it" };
-    let message = format!("--ground: link `{link}` starts {:.6} m within the ground{remedy}", -lowest);
+    let message = format!("{flag}: link `{link}` starts {:.6} m within the ground{remedy}", -lowest);
     if lowest < -1e-3 { Err(crate::failure::Failure::Wrong(message)) } else { Ok(()) }
 }
 
+/// The keys of a file of contacts.
+const KEYS: Object = Object::of(&[]).optional(&["points", "planes"]).children(&[
+    ("points", Object::of(&["frame"]).optional(&["at", "radius", "friction", "restitution", "name"])),
+    ("planes", Object::of(&[]).optional(&["name", "pose", "velocity"])),
+]);
+
 fn read(name: &str, model: &Model, [mu, restitution]: [f64; 2]) -> Result<Contacts<'static>> {
     let file = json_file::read(name)?;
-    let list = |key: &'static str| match file.value.get(key) {
-        None => Ok(&[][..]),
-        Some(Value::Array(list)) => Ok(&list[..]),
-        Some(_) => Err(file.wrong(&[Step::Key(key)], format!("`{key}` is no list of objects"))),
-    };
-    // an object with no other keys
-    let known = |entry: &Value, path: &[Step], keys: &[&str]| -> Result<()> {
-        let expected = keys.join(", ");
-        let Some(entries) = entry.as_object() else {
-            return Err(file.wrong(path, format!("it is no object, expected one with {expected}")).into());
-        };
-        match entries.keys().find(|key| !keys.contains(&key.as_str())) {
-            None => Ok(()),
-            Some(key) => {
-                let path = [path, &[Step::Key(key)]].concat();
-                Err(file.wrong(&path, format!("unknown `{key}`, expected {expected}")).into())
-            }
-        }
-    };
-    known(&file.value, &[], &["points", "planes"])?;
-    let name_of = |entry: &Value, path: &[Step]| match entry.get("name") {
-        None => Ok(None),
-        Some(Value::String(name)) => Ok(Some(name.clone())),
-        Some(_) => Err(file.wrong(path, "`name` is no text".to_string())),
-    };
+    let root = At::root(&file, "the contacts");
+    KEYS.check_all(&root)?;
+    let list = |key| Read::Ok(root.get(key).some(At::list)?.unwrap_or_default());
     let mut found = Contacts::default();
-    for (k, entry) in list("points")?.iter().enumerate() {
-        let at = |key| [Step::Key("points"), Step::Index(k), Step::Key(key)];
-        known(entry, &at("")[..2], &["frame", "at", "radius", "friction", "restitution", "name"])?;
-        let frame = entry.get("frame").and_then(Value::as_str);
-        let frame =
-            frame.ok_or_else(|| file.wrong(&at("frame"), "`frame` is missing, expected the name of a frame"))?;
-        let value = |key, default| match entry.get(key) {
-            None => Ok(default),
-            Some(value) => value.as_f64().ok_or_else(|| file.wrong(&at(key), format!("`{key}` is not a number"))),
-        };
-        let center = match entry.get("at") {
-            None => [0.0; 3],
-            Some(value) => list_of::<3>(value).ok_or_else(|| file.wrong(&at("at"), "`at` is not [x, y, z]"))?,
-        };
-        let radius = value("radius", 0.0)?;
+    for entry in list("points")? {
+        let at = entry.get("frame");
+        let frame = at.text()?;
+        let number = |key, default| Read::Ok(entry.get(key).some(At::number)?.unwrap_or(default));
+        let radius = number("radius", 0.0)?;
         found.points.push(ContactPoint {
-            name: name_of(entry, &at("name"))?.unwrap_or_else(|| frame.to_string()),
-            frame: model.frame(frame)?,
-            center: Vec3(center),
+            name: entry.get("name").some(At::text)?.unwrap_or_else(|| frame.clone()),
+            frame: model.frame(&frame).or_else(|why| at.error(why))?,
+            center: Vec3(entry.get("at").some(At::vector)?.unwrap_or_default()),
             support: if radius == 0.0 { Support::Point } else { Support::Sphere { radius } },
-            mu: value("friction", mu)?,
-            restitution: value("restitution", restitution)?,
+            mu: number("friction", mu)?,
+            restitution: number("restitution", restitution)?,
         });
     }
     for (k, entry) in list("planes")?.iter().enumerate() {
-        let at = |key| [Step::Key("planes"), Step::Index(k), Step::Key(key)];
-        known(entry, &at("")[..2], &["name", "pose", "velocity"])?;
-        let pose = match entry.get("pose") {
-            None => SE3::identity(),
-            Some(value) => {
-                let wrong =
-                    || file.wrong(&at("pose"), "`pose` is not [qw, qx, qy, qz, x, y, z] with a unit quaternion");
-                let pose = list_of::<7>(value).ok_or_else(wrong)?;
-                let size = pose[..4].iter().map(|x| x * x).sum::<f64>();
-                if (size - 1.0).abs() > 2e-3 {
-                    return Err(wrong().into());
-                }
-                SE3::from_pose(pose)
-            }
-        };
-        let motion = match entry.get("velocity") {
+        let pose = entry.get("pose").some(pose)?.unwrap_or_else(SE3::identity);
+        let motion = match entry.get("velocity").some(At::vector)? {
             None => PlaneMotion::Fixed(pose),
-            Some(value) => {
-                let v =
-                    list_of::<3>(value).ok_or_else(|| file.wrong(&at("velocity"), "`velocity` is not [x, y, z]"))?;
-                PlaneMotion::Belt(pose, Vec3(v))
-            }
+            Some(v) => PlaneMotion::Belt(pose, Vec3(v)),
         };
-        let name = name_of(entry, &at("name"))?.unwrap_or_else(|| format!("plane {}", k + 1));
+        let name = entry.get("name").some(At::text)?.unwrap_or_else(|| format!("plane {}", k + 1));
         found.planes.push(Plane { name, motion });
     }
     Ok(found)
 }
 
-fn list_of<const K: usize>(value: &Value) -> Option<[f64; K]> {
-    value.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?.try_into().ok()
+/// A plane's pose: unit quaternion and origin.
+fn pose(at: &At) -> Read<SE3> {
+    let pose = at.vector::<7>()?;
+    let square = pose[..4].iter().map(|x| x * x).sum::<f64>();
+    if (square - 1.0).abs() > 2e-3 {
+        return at.wrong("[qw, qx, qy, qz, x, y, z] with a unit quaternion");
+    }
+    Ok(SE3::from_pose(pose))
 }

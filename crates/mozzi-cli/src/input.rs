@@ -1,8 +1,9 @@
 //! A file, or standard input for `-`, read no further than a bound if its length is unknown.
 
 use crate::failure::{Failure, Result};
-use std::fs::File;
+use mozzi_urdf::files;
 use std::io::{self, Read};
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// Largest number of bytes from a pipe or a device, such as /dev/zero, which may never end.
@@ -23,6 +24,15 @@ pub fn robot_text() -> io::Result<&'static [u8]> {
     Ok(ROBOT_TEXT.get_or_init(|| text))
 }
 
+/// The text of a robot's file, or of standard input for `-`; a pipe is read once and its text kept.
+pub fn robot_file(name_or_path: &str) -> Result<String> {
+    let bytes = match name_or_path {
+        "-" => robot_text().map(<[u8]>::to_vec),
+        path => files::read_start(Path::new(path), ROBOT),
+    };
+    to_text(name_or_path, bytes.map_err(|error| cannot(name_or_path, &error))?)
+}
+
 pub struct Input {
     reader: Box<dyn Read>,
     /// Bytes of a file on a disk.
@@ -40,7 +50,7 @@ impl Input {
             }
             return Ok(Input { reader: Box::new(io::stdin().lock()), length: None, read: 0 });
         }
-        let opened = File::open(file).map_err(|error| cannot(file, &error))?;
+        let opened = files::open(Path::new(file)).map_err(|error| cannot(file, &error))?;
         let found = opened.metadata().map_err(|error| cannot(file, &error))?;
         let length = found.is_file().then_some(found.len());
         Ok(Input { reader: Box::new(opened), length, read: 0 })

@@ -47,7 +47,7 @@ fn flag(Input { name, symbol, unit, about, dim }: Input) -> Arg {
     let argument =
         Arg::new(name).long(name).value_name(entries).help(help).allow_hyphen_values(true).conflicts_with("input");
     match name {
-        "theta" => argument.visible_alias("q"),
+        "theta" => argument.visible_alias("q").aliases(["qpos", "positions"]),
         "dtheta" => argument.visible_alias("qd"),
         "ddtheta" => argument.visible_alias("qdd"),
         _ => argument,
@@ -72,10 +72,21 @@ impl InputArguments {
         self.0.contains_key(name)
     }
 
+    /// Is a state given, by numbers or by name?
+    pub fn has_state(&self) -> bool {
+        [STATE, "theta", "dtheta"].iter().any(|name| self.has(name))
+    }
+
+    /// (θ, θ̇).
+    pub fn start(&self, model: &Model) -> Result<(Vec<f64>, Vec<f64>)> {
+        let text = |name: &str| self.0.get(name).map(String::as_str);
+        start(model, text(STATE), text("theta"), text("dtheta"))
+    }
+
     /// A quantity's inputs, in their order.
     pub fn read(&self, declaration: &Declaration, model: &Model) -> Result<Vec<Vec<f64>>> {
         let text = |name: &str| self.0.get(name).map(String::as_str);
-        let (theta, dtheta) = start(model, text(STATE), text("theta"), text("dtheta"))?;
+        let (theta, dtheta) = self.start(model)?;
         let read = |&Input { name, .. }: &Input| match name {
             "theta" => Ok(theta.clone()),
             "dtheta" => Ok(dtheta.clone()),

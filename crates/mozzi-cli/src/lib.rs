@@ -1,15 +1,18 @@
 //! `mozzi`: the dynamics of robots on the command line. It converts arguments, calls the library and reports
 //! errors; every formula is the library's.
 
+mod angles;
 mod columns;
 mod commands;
 mod conditions;
 mod controller;
+mod edits;
 mod effect;
 mod exit;
 mod failure;
 mod goals;
 mod ground;
+mod guess;
 mod input;
 mod inputs;
 mod interrupt;
@@ -19,6 +22,7 @@ mod log;
 mod motors;
 mod numbers;
 mod output;
+mod outputs;
 mod progress;
 mod quantity;
 mod recogniser;
@@ -34,16 +38,19 @@ mod tables;
 mod task;
 mod terminal;
 mod text_table;
+mod tip;
 #[doc(hidden)]
 pub mod untrusted;
 mod version;
 mod workload;
 mod xacro_arguments;
 
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use commands::{assemble, check, compute, convert, explain, info, screws, simulate, terms, tour};
+use commands::{assemble, check, compute, convert, explain, info, robots, screws, simulate, terms, tour};
 use failure::{Failure, Result};
-use mozzi_text as text;
+use mozzi_report::text;
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -52,8 +59,12 @@ use std::process::ExitCode;
 /// Without a subcommand: a tour with the UR5 arm. MODEL is a file (URDF, xacro, MuJoCo's MJCF, or JSON
 /// of `mozzi convert`), - for standard input, or the name of an embedded robot.
 #[derive(Parser, Debug)]
-#[command(name = "mozzi", version, long_version = version::long(), after_help = help(), after_long_help = help(), max_term_width = 104)]
+#[command(name = "mozzi", version, long_version = version::long(), after_help = help(), after_long_help = help())]
+#[command(term_width = text::page_width(), args_conflicts_with_subcommands = true)]
 struct Arguments {
+    /// Write the motion of the tour to a table
+    #[arg(long, value_name = "FILE.csv")]
+    out: Option<String>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -65,18 +76,25 @@ fn help() -> String {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Show the robot: joints, limits, links, masses, frames
+    /// List the embedded robots, and the kinds of files
+    #[command(aliases = ["robot", "models", "model", "list", "ls"])]
+    Robots(robots::RobotsArguments),
+    /// Show the robot: joints, limits, links, masses, frames; without a robot, list the embedded ones
+    #[command(mut_arg("model", info::model))]
     Info(info::InfoArguments),
     /// Print the book's lists: M_i, M_i-1,i, S_i, B_i, A_i, G_i
     Screws(screws::ScrewsArguments),
     /// Compute every quantity at one state: T, J, M, C, c, g, h, JᵀF, τ, θ̈, energies, Λ, η, …
+    #[command(alias = "dynamics")]
     Terms(terms::TermsArguments),
     /// Compute one quantity, at one state or at every state of a table: τ, θ̈, M, Jacobians, derivatives, …
     #[command(after_help = format!("{COMPUTE}\n\n{TABLES}"), mut_arg("model", compute::model))]
     Compute(compute::ComputeArguments),
     /// Measure how long each quantity takes on this machine, for one state and for many
+    #[command(alias = "benchmark")]
     Bench(commands::bench::BenchArguments),
     /// Inverse kinematics: joint positions that place the end effector at a desired pose, or at a table of poses
+    #[command(aliases = ["inverse-kinematics", "inverse_kinematics"])]
     Ik(commands::ik::IkArguments),
     /// Identify the robot from logs of its motion: masses, inertias, friction that predict the measured torques
     #[command(after_help = IDENTIFICATIONS)]
@@ -85,15 +103,15 @@ enum Command {
     #[command(after_help = EXCITATIONS)]
     Excite(commands::excite::ExciteArguments),
     /// Plan a trajectory in joint space or along lines and screws, within limits of velocity, acceleration and torque
-    #[command(after_help = TRAJECTORIES)]
+    #[command(after_help = TRAJECTORIES, aliases = ["plan", "traj"])]
     Trajectory(commands::trajectory::TrajectoryArguments),
     /// Close a robot's loops: positions and velocities that satisfy its constraints, and how many it has
     Assemble(assemble::AssembleArguments),
     /// Simulate the motion from a state, under joint torques and a tip wrench
-    #[command(after_help = SIMULATIONS)]
+    #[command(after_help = SIMULATIONS, alias = "sim")]
     Simulate(simulate::SimulateArguments),
     /// Show the robot in a browser: a motion with plots, or a slider for each joint
-    #[command(after_help = TABLES)]
+    #[command(after_help = TABLES, aliases = ["show", "visualize"])]
     View(commands::view::ViewArguments),
     /// Play with a robot in a browser: drop its file, drag it, simulate it in real time, read every quantity
     #[command(mut_arg("model", commands::play::model))]
@@ -102,6 +120,7 @@ enum Command {
     #[command(after_help = TABLES)]
     Plot(commands::plot::PlotArguments),
     /// Check a robot's file: all errors and warnings, each with its place
+    #[command(aliases = ["lint", "validate"])]
     Check(check::CheckArguments),
     /// Convert a robot to URDF, JSON, or Python for NumPy
     Convert(convert::ConvertArguments),
@@ -121,36 +140,28 @@ enum Command {
 
 const EXAMPLES: &str = "\
 Examples:
-  mozzi                                                 the tour
-  mozzi info panda                                      joints, limits, links, masses, frames
-  mozzi check my_robot.urdf                             what is wrong with a file
-  mozzi check my_robot.urdf --format json               the same, one JSON object per line
-  mozzi explain zero_axis                               what a diagnostic's code means
-  mozzi info ur.urdf.xacro --xacro-arg prefix:=left_    a robot as ROS users write it; --package NAME=DIR
-  mozzi xacro ur.urdf.xacro prefix:=left_ -o ur.urdf    its expansion
-  mozzi convert my_robot.urdf my_robot.json             links, joints and the book's lists; mozzi reads this file
-  mozzi compare my_robot.urdf                           compared with Pinocchio and MuJoCo: what differs, and why
-  mozzi terms my_robot.urdf --lenient                   repairs inertias; --strict: warnings are errors
-  mozzi screws ur5 --python > ur5.py                    lists for NumPy and its modern_robotics
-  mozzi terms ur5 --theta 0,-1.2,1.5,0.3,1.1,0          every term of the dynamics at one state
-  mozzi terms two_link_planar --theta 0.3,0.8 --task vx,vz
-  mozzi compute --list                                  every quantity: its formula, inputs and outputs
-  mozzi compute panda mass-matrix --theta 0,0.5,0,-1.5,0,2,0,0.02 --json
-  mozzi compute ur5 forward-dynamics --tau 0,-40,-12,0,0,0 --tip-wrench 0,0,0,0,0,-20
-  mozzi compute ur5 inverse-dynamics --in motion.csv --out torques.csv
-  mozzi compute ur5 mass-matrix --in states.npy --out M.npy
-  mozzi bench panda                                     nanoseconds per state on your machine
-  mozzi codegen panda --quantity inverse-dynamics --lang rust --out src
-  mozzi codegen panda --explain                         operations before and after folding constants
-  mozzi terms quadruped.urdf --floating                 with a floating base: its quaternion and origin first
-  mozzi ik ur5 --position 0.4,0.2,0.5 --rpy 3.14,0,0    joint positions for a pose of the tool
-  mozzi simulate double_pendulum --theta 1.5,0 --time 5 --out swing.csv
-  mozzi simulate ur5 --report fall.html                 the motion as one HTML file: 3-D view, plots
-  mozzi simulate my_robot.xml --state home              from a keyframe; `mozzi info my_robot.xml` lists them
-  mozzi plot energy double_pendulum swing.csv --out energy.svg
-  mozzi view my_robot.urdf                              the robot in the browser, a slider for each joint
-  mozzi view double_pendulum swing.csv --out swing.html a motion from a table
-  mozzi play my_robot.urdf                              the playground: drag, simulate, edit, read every quantity
+  mozzi                                  the tour
+  mozzi robots                           the embedded robots
+  mozzi info panda                       joints, limits, links, masses, frames
+  mozzi check my_robot.urdf              what is wrong with a file
+  mozzi terms ur5 --q 0,-1.2,1.5,0.3,1.1,0
+                                         the terms of the dynamics at a state
+  mozzi compute ur5 M,h,g --q 0,-70,85,20,60,0 --deg
+                                         quantities by their symbols; degrees
+  mozzi compute ur5 rnea --in motion.csv --out torques.csv
+                                         a quantity at every state of a table
+  mozzi compute --list                   every quantity: formula, inputs, outputs
+  mozzi ik ur5 --position 0.4,0.2,0.5 --rpy pi,0,0
+                                         joint positions for a pose of the tool
+  mozzi simulate ur5 --controller computed-torque --response 0.1
+                                         motors hold the arm where it starts
+  mozzi simulate double_pendulum --q 1.5,0 --time 5 --out swing.csv
+  mozzi view double_pendulum swing.csv   a motion in the browser
+  mozzi play my_robot.urdf               drag, simulate, edit, read everything
+  mozzi convert my_robot.urdf my_robot.json
+                                         links, joints and the book's lists
+  mozzi identify ur5 log.csv             parameters from logs of its motion
+`mozzi COMMAND --help` has more.
 
 Units: rad, m, s, kg, N. Twists and wrenches: angular part first.
 F_tip is the wrench that the robot applies to the environment, in the end effector's frame.
@@ -205,13 +216,15 @@ Conditions that are true for less than a quarter of a step may be missed.
 
 Tables are described in `mozzi compute --help`: t, theta_1 …, dtheta_1 …, tau_1 …; --follow reads what `mozzi trajectory` writes.
 
-A controller is a JSON object; gains are one number for all, or lists:
+--controller is a name: pd-gravity, computed-torque, task-space, impedance of the end effector, standing on the feet of
+--ground; gains then follow from --response, a time constant. Or it is a file of a JSON object; gains are one number for
+all, or lists:
   {\"controller\": \"pd-gravity\", \"p\": 200, \"d\": 40}               g(θ) + k(θ − θ₀) + p e + d ė; N m/rad, N m s/rad
   {\"controller\": \"computed-torque\", \"p\": 100, \"d\": 20}          ë + d ė + p e = 0; 1/s², 1/s
   {\"controller\": \"task-space\", \"frame\": \"tool0\", \"p\": 100, \"d\": 20, \"posture_p\": 25, \"posture_d\": 10}
   {\"controller\": \"impedance\", \"frame\": \"tool0\", \"stiffness\": [20, 20, 20, 500, 500, 500], \"damping\": [1, 1, 1, 50, 50, 50],
    \"posture_p\": 25, \"posture_d\": 10}
-An additional \"model\": \"FILE or embedded robot\" is the controller's own model of the robot.";
+Without posture_p and posture_d the posture has the gains of --response. An additional \"model\": \"FILE or embedded robot\" is the controller's own model of the robot.";
 
 const COMPUTE: &str = "\
 Examples:
@@ -239,33 +252,59 @@ Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 
   .arrow .csv      one column per entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
 NaN in a state gives NaN in the results of that state only.";
 
-/// The arguments; flags that have no effect are an error.
-fn parsed() -> Result<Arguments, clap::Error> {
-    let mut program = Arguments::command();
-    let matches = program.try_get_matches_from_mut(std::env::args_os())?;
+/// The arguments, and whether their outputs can be written; flags that have no effect are an error.
+fn parsed(words: Vec<OsString>) -> Result<(Arguments, Result<()>), clap::Error> {
+    let mut program = numeric(Arguments::command());
+    let words =
+        guess::meant(words, &program).map_err(|said| program.error(ErrorKind::MissingRequiredArgument, said))?;
+    let matches = program.try_get_matches_from_mut(&words).map_err(|error| tip::explained(error, &program, &words))?;
     effect::check(&mut program, &matches)?;
-    Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut program))
+    let is_set = |matches: &clap::ArgMatches| matches.try_get_one("deg").ok().flatten().copied() == Some(true);
+    angles::set_degrees(matches.subcommand().is_some_and(|(_, matches)| is_set(matches)));
+    let outputs = outputs::check(&program, &matches);
+    let arguments = Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut program))?;
+    Ok((arguments, outputs))
+}
+
+/// The program whose flags may have negative numbers: `--cutoff -1` is a wrong number, not an unknown flag.
+fn numeric(program: clap::Command) -> clap::Command {
+    let negative = |argument: clap::Arg| {
+        let takes_numbers = argument.get_long().is_some() && argument.get_action().takes_values();
+        if takes_numbers { argument.allow_negative_numbers(true) } else { argument }
+    };
+    program.mut_subcommands(|command| command.mut_args(negative))
 }
 
 /// The program.
 pub fn main() -> ExitCode {
-    let arguments = match parsed() {
+    ExitCode::from(run_with(std::env::args_os()))
+}
+
+/// The program with these words, of which the first is its name; returns its exit code.
+pub fn run_with(words: impl IntoIterator<Item = OsString>) -> u8 {
+    mozzi_urdf::files::remember(); // so that no file that is read is overwritten
+    let words: Vec<OsString> = words.into_iter().collect();
+    let has_odd_words = words.iter().any(|word| is_odd(&word.to_string_lossy()));
+    let (arguments, outputs) = match parsed(words) {
         Ok(arguments) => arguments,
-        Err(error) if error.use_stderr() && std::env::args_os().any(|word| is_odd(&word.to_string_lossy())) => {
+        Err(error) if error.use_stderr() && has_odd_words => {
             failure::write(&error.render().to_string()); // without colours
-            return ExitCode::from(exit::USAGE);
+            return exit::USAGE;
         }
-        Err(error) => error.exit(),
+        Err(error) => {
+            let _ = error.print(); // as clap's own exit, which would also end Python
+            return if error.use_stderr() { exit::USAGE } else { exit::SUCCESS };
+        }
     };
-    let answer = run(&arguments);
+    let answer = outputs.and_then(|()| run(&arguments));
     let (text, code) = match answer {
-        Ok(text) => (text, ExitCode::from(exit::SUCCESS)),
+        Ok(text) => (text, exit::SUCCESS),
         Err(failure) => {
             failure.say();
             match failure {
-                Failure::Answered(text) => (text, ExitCode::from(exit::FAILED)),
-                Failure::Stopped(text) => (text, ExitCode::from(exit::STOPPED)),
-                _ => (String::new(), ExitCode::from(exit::FAILED)),
+                Failure::Answered(text) => (text, exit::FAILED),
+                Failure::Stopped(text) => (text, exit::STOPPED),
+                _ => (String::new(), exit::FAILED),
             }
         }
     };
@@ -276,7 +315,7 @@ pub fn main() -> ExitCode {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => code,
         Err(error) => {
             Failure::wrong(format!("standard output cannot be written: {error}")).say();
-            ExitCode::from(exit::FAILED)
+            exit::FAILED
         }
     }
 }
@@ -288,7 +327,8 @@ fn is_odd(word: &str) -> bool {
 
 fn run(arguments: &Arguments) -> Result<String> {
     match &arguments.command {
-        None => tour::run(),
+        None => tour::run(arguments.out.as_deref()),
+        Some(Command::Robots(arguments)) => robots::run(arguments),
         Some(Command::Info(arguments)) => info::run(arguments),
         Some(Command::Screws(arguments)) => screws::run(arguments),
         Some(Command::Terms(arguments)) => terms::run(arguments),

@@ -2,29 +2,65 @@
 
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
-use crate::numbers::{WRENCH, array};
+use crate::input;
+use crate::numbers::{WRENCH, array, number};
 use crate::robot::RobotArguments;
 use crate::tables::read as table_file;
 use crate::tables::samples::Samples;
 use clap::{Args, ValueEnum};
-use mozzi::simulation::{self, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 use mozzi::{Base, Model, Wrench};
 use mozzi_motion::Policy;
 use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
+use mozzi_sim::{self, Contacts, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
+use mozzi_urdf::mjcf::{self, Actuated};
+
+/// The value of --torque for the actuators of a file.
+pub const ACTUATORS: &str = "actuators";
+/// Notes about actuators that are not computed.
+const MOST_NOTES: usize = 3;
+
+/// A file's actuators as an input.
+pub struct Actuators(Actuated);
+
+impl Input for Actuators {
+    fn torque(
+        &mut self,
+        _: f64,
+        theta: &[f64],
+        dtheta: &[f64],
+        tau: &mut [f64],
+    ) -> std::result::Result<(), mozzi_sim::Error> {
+        self.0.add_forces(theta, dtheta, tau);
+        Ok(())
+    }
+
+    fn gains(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        self.0.gains(stiffness, damping);
+    }
+}
+
+/// The default time constant of controllers, s.
+const RESPONSE: f64 = 0.1;
 
 #[derive(Args, Debug)]
 pub struct MotorArguments {
-    /// Motor torques: zero, gravity-compensation, or a table with columns t, tau_1, … (interpolated linearly); added
-    /// to a controller's
-    #[arg(long, value_name = "FILE|zero|gravity-compensation", default_value = "zero")]
-    pub torque: String,
+    /// Motor torques: zero, gravity-compensation, actuators (those of an MJCF file with the controls of --state, and
+    /// its gravity compensation), or a table with columns t, tau_1, … (interpolated linearly); added to a
+    /// controller's [default: actuators if the file has some that act, else zero]
+    #[arg(long, value_name = "FILE|zero|gravity-compensation|actuators")]
+    pub torque: Option<String>,
     /// Reference for the controller: a table with columns t, theta_1, … and optionally dtheta_, ddtheta_; with a
     /// floating base only the joints are followed, and the base's columns may be missing
     #[arg(long, value_name = "FILE", requires = "controller")]
     pub follow: Option<String>,
-    /// A controller in a JSON file; without --follow it holds the initial positions
-    #[arg(long, value_name = "FILE.json")]
+    /// A controller by its name (pd-gravity, computed-torque, task-space, impedance, standing), or in a JSON file;
+    /// without --follow it holds the initial positions
+    #[arg(long, value_name = "NAME|FILE.json")]
     pub controller: Option<String>,
+    /// Time constant of a controller's gains that no file gives, s: errors fall as in ë + 2ω ė + ω² e = 0 with ω = 1/T
+    /// [default: 0.1]
+    #[arg(long, value_name = "T", requires = "controller", allow_hyphen_values = true)]
+    response: Option<String>,
     /// How to treat the motors' effort limits
     #[arg(long, value_name = "WHAT", default_value = "report")]
     pub effort_limits: Limit,
@@ -105,8 +141,57 @@ impl MotorArguments {
         Ok(Some(Followed { start: [start.theta, start.dtheta], reference: Box::new(reference) }))
     }
 
+    /// The actuators of an MJCF file and its gravity compensation, with the controls of a state: if --torque asks for
+    /// them, or without --torque and --controller if they act.
+    pub fn actuated(&self, robot: &RobotArguments, model: &Model, state: Option<&str>) -> Result<Option<Actuators>> {
+        let is_asked = self.torque.as_deref() == Some(ACTUATORS);
+        if !is_asked && (self.torque.is_some() || self.controller.is_some()) {
+            return Ok(None);
+        }
+        let (xacro, file) = (robot.settings().xacro, &*robot.model);
+        let found = match file {
+            "-" => {
+                let text = input::robot_text().map_err(|error| input::cannot(file, &error))?;
+                mjcf::actuation_of(None, input::name(file), text, &xacro)
+            }
+            file => mjcf::actuation(file, &xacro)?,
+        };
+        for line in found.left_out.iter().take(MOST_NOTES) {
+            failure::note(line);
+        }
+        if found.left_out.len() > MOST_NOTES {
+            failure::note(&format!("and {} more actuators are not computed", found.left_out.len() - MOST_NOTES));
+        }
+        let count = found.actuators.iter().flatten().count();
+        if is_asked && count == 0 && found.compensated.is_empty() {
+            return Err(Failure::wrong(format!(
+                "--torque actuators: {} has no actuators that are computed, expected MJCF with <actuator>",
+                input::name(file)
+            )));
+        }
+        let controls = state.and_then(|name| found.controls.get(name));
+        let actuated = Actuated::new(model, &found, controls.map_or(&[], Vec::as_slice))?;
+        if !is_asked && !actuated.acts() {
+            return Ok(None);
+        }
+        let with = match (state, controls) {
+            (Some(name), Some(_)) => format!("the controls of state `{name}`"),
+            _ => "controls of 0".to_string(),
+        };
+        let weights = match found.compensated.len() {
+            0 => String::new(),
+            1 => ", and the weight of 1 link is compensated".to_string(),
+            many => format!(", and the weights of {many} links are compensated"),
+        };
+        failure::note(&format!(
+            "the file's actuators ({count}) drive the robot with {with}{weights}; --torque zero leaves them out"
+        ));
+        Ok(Some(Actuators(actuated)))
+    }
+
     pub fn controller(&self, robot: &RobotArguments) -> Result<Option<Controller>> {
-        self.controller.as_deref().map(|file| Controller::read(file, robot)).transpose()
+        let response = self.response.as_deref().map_or(Ok(RESPONSE), |text| number("--response", text))?;
+        self.controller.as_deref().map(|name| Controller::read(name, response, robot)).transpose()
     }
 
     /// The torques of --torque and of the controller.
@@ -115,12 +200,15 @@ impl MotorArguments {
         model: &'a Model,
         controller: Option<&'a Controller>,
         reference: &'a dyn Reference,
+        contacts: &Contacts,
         end: f64,
     ) -> Result<Box<dyn Input + 'a>> {
-        let given: Box<dyn Input + 'a> = match self.torque.as_str() {
-            "zero" => Box::new(Zero),
-            "gravity-compensation" => Box::new(GravityCompensation::new(model)),
-            file => {
+        let given: Box<dyn Input + 'a> = match self.torque.as_deref() {
+            None | Some("zero" | ACTUATORS) => Box::new(Zero),
+            Some("gravity-compensation" | "gravity" | "gravity_compensation") => {
+                Box::new(GravityCompensation::new(model))
+            }
+            Some(file) => {
                 let samples = table_file::read(file, model)?;
                 let values = samples.need("tau", model)?.to_vec();
                 Box::new(TorqueTable(self.table(&samples, values, end)?))
@@ -128,7 +216,7 @@ impl MotorArguments {
         };
         match controller {
             None => Ok(given),
-            Some(controller) => Ok(Box::new((given, controller.follow(model, reference)?))),
+            Some(controller) => Ok(Box::new((given, controller.follow(model, reference, contacts)?))),
         }
     }
 
@@ -137,7 +225,7 @@ impl MotorArguments {
         let tip = model.end_effector()?;
         if !std::path::Path::new(text).exists() && text.contains(',') {
             let F = Wrench::from_array(array("--tip-wrench", text, WRENCH)?);
-            return Ok(Box::new(simulation::applied(tip, move |_, _, _| F)));
+            return Ok(Box::new(mozzi_sim::applied(tip, move |_, _, _| F)));
         }
         let samples = table_file::read(text, model)?;
         let values = samples.need("wrench", model)?.to_vec();

@@ -1,27 +1,66 @@
 //! Numbers from the command line.
 
+use crate::angles;
 use crate::failure::{Failure, Result};
 use crate::terminal::excerpt;
 use std::fmt::Display;
 
 /// A finite number; `place` is its source in messages: "--step", "table.csv:3: column 2 (`tau_1`)".
 pub fn number(place: impl Display, text: &str) -> Result<f64> {
+    let (x, unit) = with_unit(&place, text)?;
+    match unit {
+        Unit::Degrees => Err(Failure::wrong(format!("{place} is `{}`, which is no angle", excerpt(text.trim())))),
+        Unit::Plain | Unit::Radians => Ok(x),
+    }
+}
+
+/// An angle in radians: `1.5`, in degrees with `--deg`; `pi/2`; `45deg`.
+pub fn angle(place: impl Display, text: &str) -> Result<f64> {
+    with_unit(place, text).map(|(x, unit)| in_radians(x, unit))
+}
+
+fn in_radians(x: f64, unit: Unit) -> f64 {
+    if unit == Unit::Plain && angles::are_degrees() { x.to_radians() } else { x }
+}
+
+/// Angles, separated by commas, of which only those that `are_angles` may be in degrees.
+pub fn angles(place: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f64>> {
+    let entry = |(k, text): (usize, &str)| {
+        let place = format_args!("{place}: entry {}", k + 1);
+        if are_angles.get(k) == Some(&false) { number(place, text) } else { angle(place, text) }
+    };
+    if text.trim().is_empty() { Ok(Vec::new()) } else { text.split(',').enumerate().map(entry).collect() }
+}
+
+/// What was written with a number.
+#[derive(Clone, Copy, PartialEq)]
+enum Unit {
+    Plain,
+    /// A multiple of π.
+    Radians,
+    Degrees,
+}
+
+fn with_unit(place: impl Display, text: &str) -> Result<(f64, Unit)> {
     let text = text.trim();
     let wrong = |expected| Err(Failure::wrong(format!("{place} is `{}`, expected {expected}", excerpt(text))));
     match value(&text.replace('−', "-")) {
-        Some(x) if x.is_finite() => Ok(x),
+        Some((x, unit)) if x.is_finite() => Ok((x, unit)),
         Some(_) => wrong("a finite number"),
         None => wrong("a number"),
     }
 }
 
-/// "1.5", "pi/2", "-3pi/4", "2*pi", and in degrees "45deg" or "45°".
-fn value(text: &str) -> Option<f64> {
+/// "1.5", "pi/2", "-3pi/4", "2*pi", "1.5rad", and in degrees "45deg" or "45°".
+fn value(text: &str) -> Option<(f64, Unit)> {
     if let Ok(x) = text.parse() {
-        return Some(x);
+        return Some((x, Unit::Plain));
     }
     if let Some(degrees) = text.strip_suffix("deg").or(text.strip_suffix('°')) {
-        return degrees.trim().parse::<f64>().ok().map(f64::to_radians);
+        return degrees.trim().parse::<f64>().ok().map(|x| (x.to_radians(), Unit::Degrees));
+    }
+    if let Some(radians) = text.strip_suffix("rad") {
+        return radians.trim().parse::<f64>().ok().map(|x| (x, Unit::Radians));
     }
     let (over, under) = text.split_once('/').unwrap_or((text, "1"));
     let factor = over.trim().strip_suffix("pi").or(over.trim().strip_suffix('π'))?;
@@ -31,7 +70,7 @@ fn value(text: &str) -> Option<f64> {
         factor => factor.parse::<f64>().ok()?,
     };
     let under: f64 = under.trim().parse().ok().filter(|x| *x != 0.0)?;
-    Some(factor * std::f64::consts::PI / under)
+    Some((factor * std::f64::consts::PI / under, Unit::Radians))
 }
 
 /// Finite numbers, separated by commas.
@@ -43,20 +82,21 @@ pub fn numbers(place: &str, text: &str) -> Result<Vec<f64>> {
 }
 
 /// One number for each name.
-pub fn numbers_for<'n>(
-    place: &str,
-    text: &str,
-    names: impl ExactSizeIterator<Item = &'n str> + Clone,
-) -> Result<Vec<f64>> {
+pub fn numbers_for<'n>(place: &str, text: &str, names: impl ExactSizeIterator<Item = &'n str>) -> Result<Vec<f64>> {
     let found = numbers(place, text)?;
     if found.len() == names.len() {
         return Ok(found);
     }
-    let mut list: Vec<&str> = names.clone().take(12).collect();
+    Err(wrong_number(place, found.len(), &names.collect::<Vec<_>>()))
+}
+
+/// "--theta has 3 entries, expected 2: shoulder, elbow"
+pub fn wrong_number(place: &str, count: usize, names: &[&str]) -> Failure {
+    let mut list: Vec<&str> = names.iter().copied().take(12).collect();
     if names.len() > list.len() {
         list.push("…");
     }
-    Err(wrong_count(place, found.len(), names.len(), &list.join(", ")))
+    wrong_count(place, count, names.len(), &list.join(", "))
 }
 
 /// "--theta has 3 entries, expected 6: …"
@@ -78,12 +118,12 @@ pub const TWIST: [&str; 6] = ["ω_x", "ω_y", "ω_z", "v_x", "v_y", "v_z"];
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::{angle, angles, number};
     use std::f64::consts::PI;
 
     #[test]
     fn angles_are_written_as_people_write_them() {
-        let read = |text: &str| number("--theta", text).ok();
+        let read = |text: &str| angle("--theta", text).ok();
         for (text, expected) in [
             ("1.5", 1.5),
             ("pi", PI),
@@ -93,11 +133,13 @@ mod tests {
             ("−π", -PI),
             ("45deg", PI / 4.0),
             ("-90°", -PI / 2.0),
+            ("0.5rad", 0.5),
         ] {
             assert!((read(text).expect(text) - expected).abs() < 1e-15, "{text}");
         }
         for text in ["pie", "pi/0", "1/2", "deg", "inf", "2pi3", "--pi"] {
             assert!(read(text).is_none(), "{text}");
         }
+        assert!(number("--step", "45deg").is_err() && angles("--theta", "45deg,45deg", &[true, false]).is_err());
     }
 }

@@ -3,10 +3,13 @@
 
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
-use mozzi_text::whole_file::WholeFile;
+use mozzi_report::whole_file::WholeFile;
+use mozzi_urdf::files;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 pub struct Output {
     file: String,
@@ -14,8 +17,27 @@ pub struct Output {
     _writing: Writing,
 }
 
+/// The files that this command has written.
+static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn written() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Output {
+    /// Begins a file that this command has neither read nor written.
     pub fn create(file: &str) -> Result<Self> {
+        let path = Path::new(file);
+        let is_written = path.is_file() && path.canonicalize().is_ok_and(|path| written().contains(&path));
+        if is_written || path.is_file() && files::was_read(path) {
+            let why = if is_written { "was written by this command already" } else { "was read by this command" };
+            return Err(Failure::wrong(format!("{file} {why} and would be lost, expected another name")));
+        }
+        Self::replacing(file)
+    }
+
+    /// Begins a file that may be one that was read.
+    pub fn replacing(file: &str) -> Result<Self> {
         let whole = WholeFile::create(Path::new(file)).map_err(|error| failed(file, &error))?;
         let writing = Writing::to(file, whole.part());
         Ok(Output { file: file.to_string(), whole, _writing: writing })
@@ -36,7 +58,9 @@ impl Output {
 
     /// Moves the complete file to its place.
     pub fn finish(self) -> Result<()> {
-        self.whole.finish().map_err(|error| failed(&self.file, &error))
+        self.whole.finish().map_err(|error| failed(&self.file, &error))?;
+        written().extend(Path::new(&self.file).canonicalize());
+        Ok(())
     }
 }
 

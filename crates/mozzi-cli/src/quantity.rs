@@ -1,35 +1,51 @@
 //! A quantity by its name on the command line.
 
 use crate::failure::Result;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::error::{ContextKind, ContextValue};
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::error::ErrorKind;
 use mozzi::Model;
 use mozzi::quantities::{ALIASES, LIST, Of, Query};
 use std::ffi::OsStr;
 
 /// Any quantity of the list, with `-` or `_` between its words, or by an alias.
 pub fn quantity() -> impl TypedValueParser<Value = Query<'static>> {
-    Names.try_map(|name| Query::named(&name))
+    Names
 }
+
+/// What other commands compute, by names that are taken for quantities.
+const ELSEWHERE: [(&str, &str); 8] = [
+    ("closed", "`mozzi terms MODEL --stacked` shows the closed form"),
+    ("newton", "`mozzi terms MODEL --all` shows the Newton-Euler recursion"),
+    ("ik", "`mozzi ik MODEL --position X,Y,Z` is inverse kinematics"),
+    ("inverse_kinematics", "`mozzi ik MODEL --position X,Y,Z` is inverse kinematics"),
+    ("all", "`mozzi terms MODEL` computes all quantities at one state"),
+    ("screw", "`mozzi screws MODEL` shows the screw axes"),
+    ("G", "`mozzi screws MODEL` shows the spatial inertias G_i"),
+    ("energy", "kinetic-energy and potential-energy are its parts"),
+];
 
 /// The names of quantities; an unknown one is answered by the nearest, not by all.
 #[derive(Clone)]
 struct Names;
 
 impl TypedValueParser for Names {
-    type Value = String;
+    type Value = Query<'static>;
 
     fn parse_ref(
         &self,
         command: &clap::Command,
-        argument: Option<&clap::Arg>,
+        _argument: Option<&clap::Arg>,
         value: &OsStr,
-    ) -> std::result::Result<String, clap::Error> {
-        PossibleValuesParser::new(values()).parse_ref(command, argument, value).map_err(|mut error| {
-            error.remove(ContextKind::ValidValue);
-            let tip = "`mozzi compute --list` shows all quantities; M, C, c, g, h, J_b, rnea, crba, aba and fk are known, too";
-            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
-            error
+    ) -> std::result::Result<Query<'static>, clap::Error> {
+        let name = value.to_string_lossy();
+        Query::named(&name).map_err(|error| {
+            let plain = name.replace('-', "_");
+            let is_meant = |known: &str| plain == known || known.len() > 3 && plain.starts_with(known);
+            let elsewhere = ELSEWHERE.iter().find(|(known, _)| is_meant(known));
+            let tip = elsewhere.map_or_else(String::new, |(_, tip)| format!("\n\n  tip: {tip}"));
+            let told = error.to_string().replace('_', "-");
+            let list = "`mozzi compute --list` shows all; M, C, c, g, h, J_b, J_s, rnea, crba, aba, fk are known, too";
+            command.clone().error(ErrorKind::InvalidValue, format!("{told}{tip}\n\n  tip: {list}"))
         })
     }
 

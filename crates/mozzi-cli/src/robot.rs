@@ -1,5 +1,7 @@
 //! The robot that a command is about.
 
+use crate::angles;
+use crate::edits::{EditArguments, pinned};
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{array, number};
 use crate::xacro_arguments::XacroArguments;
@@ -9,6 +11,7 @@ use mozzi::model::Problem;
 use mozzi::quantities::INPUTS;
 use mozzi::{Description, FrameId, Model};
 use mozzi_urdf::{Consequence, Diagnostic, LoadError, Loaded, Policy, Settings, Severity, constraints};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
 /// The number of printed warnings that do not change the motion; `mozzi check` prints all.
@@ -133,13 +136,14 @@ fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence,
     }
 }
 
+/// A robot's file, and how it is read.
 #[derive(Args, Debug)]
-pub struct RobotArguments {
+pub struct FileArguments {
     /// A file (URDF, xacro, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
     /// double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
-    #[arg(long, value_name = "FRAME", visible_alias = "frame")]
+    #[arg(long, value_name = "FRAME", visible_alias = "frame", aliases = ["ee", "tool", "tip"])]
     pub end_effector: Option<String>,
     /// Gravity in {s} (the frame of a fixed base), m/s²; one number points down, and earth, moon, mars and none are
     /// known [default: the robot's own, else 0,0,-9.81]
@@ -148,8 +152,50 @@ pub struct RobotArguments {
     /// Print one JSON object with all digits instead of text
     #[arg(long)]
     pub json: bool,
+    /// Angles of flags and of printed text are in degrees; those of files, tables and JSON stay in radians. Single
+    /// angles: 45deg, pi/4
+    #[arg(long, aliases = ["degrees", "degree"])]
+    deg: bool,
     #[command(flatten)]
     policy: PolicyArguments,
+}
+
+/// A robot, and its edits.
+#[derive(Args, Debug)]
+pub struct RobotArguments {
+    #[command(flatten)]
+    file: FileArguments,
+    #[command(flatten)]
+    edits: EditArguments,
+    /// Pin a frame where it is, at --theta or the robot's start, also its orientation unless =point follows; may be
+    /// repeated
+    #[arg(long, value_name = "FRAME[=point]")]
+    pin: Vec<String>,
+}
+
+impl Deref for RobotArguments {
+    type Target = FileArguments;
+
+    fn deref(&self) -> &FileArguments {
+        &self.file
+    }
+}
+
+impl RobotArguments {
+    /// Loads the robot with its edits and prints its warnings.
+    pub fn load(&self) -> Result<Model> {
+        self.load_at(|model| Ok(model.start().theta))
+    }
+
+    /// As [`load`](Self::load); frames are pinned where they are at these positions.
+    pub fn load_at(&self, theta: impl FnOnce(&Model) -> Result<Vec<f64>>) -> Result<Model> {
+        let model = self.edits.apply(self.file.load()?)?;
+        if self.pin.is_empty() {
+            return Ok(model);
+        }
+        let theta = theta(&model)?;
+        pinned(model, &self.pin, &theta)
+    }
 }
 
 /// Three numbers, or one that points down, or the body on whose surface it is.
@@ -163,7 +209,7 @@ fn gravity(text: &str) -> Result<[f64; 3]> {
     }
 }
 
-impl RobotArguments {
+impl FileArguments {
     /// Whether warnings are errors.
     pub fn is_strict(&self) -> bool {
         self.policy.strict
@@ -214,6 +260,11 @@ pub enum Units {
     Both,
 }
 
+/// Lines that fit a screen: an arm's, or a humanoid's.
+pub fn screen(model: &Model) -> usize {
+    if model.n() <= 8 { 60 } else { 100 }
+}
+
 /// The name of {s} for this robot.
 pub fn space_frame(model: &Model) -> &'static str {
     if model.is_floating() { "the space frame {s}" } else { "the base frame" }
@@ -245,6 +296,12 @@ impl Units {
 
     /// The unit of positions, velocities, accelerations or forces: the first inputs of [`INPUTS`].
     pub fn input(&self, index: usize) -> String {
-        self.own(INPUTS[index].unit)
+        self.shown(INPUTS[index].name, INPUTS[index].unit)
+    }
+
+    /// An input's unit on a page: with `--deg`, positions and their rates are in degrees.
+    pub fn shown(&self, name: &str, unit: &str) -> String {
+        let is_of_angles = ["theta", "dtheta", "ddtheta"].contains(&name);
+        if is_of_angles { angles::unit(&self.own(unit)) } else { self.own(unit) }
     }
 }

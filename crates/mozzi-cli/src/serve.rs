@@ -7,23 +7,25 @@ use crate::interrupt;
 use crate::json::print;
 use request::{Head, Reply};
 use serde_json::json;
+use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Result, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// Time limit for the request's head.
 const FOR_HEAD: Duration = Duration::from_secs(5);
-/// Time limits for sending a piece of the answer, and all of it.
+/// Time limits for sending a piece of the answer, and all of it: this time, and more for each byte (100 kB/s).
 const FOR_PIECE: Duration = Duration::from_secs(10);
-const FOR_ANSWER: Duration = Duration::from_secs(600);
+const FOR_ANSWER: Duration = Duration::from_secs(20);
+const PER_BYTE: Duration = Duration::from_micros(10);
 const PIECE: usize = 1 << 16;
 /// Limits on time and bytes for data that a client still sends after the answer.
 const FOR_REST: Duration = Duration::from_secs(1);
 const LONGEST_REST: usize = 8 << 20;
-/// Connections at the same time; more have to wait.
-const MOST: usize = 256;
+/// Connections at the same time; a further one ends the oldest, so that slow clients keep nobody out.
+const MOST: usize = 128;
 const PAUSE: Duration = Duration::from_millis(20);
 
 pub struct Server(TcpListener);
@@ -42,17 +44,23 @@ impl Server {
     pub fn run(&self, page: String) -> Result<()> {
         interrupt::end_at_once();
         let (port, page) = (self.address()?.port(), Arc::<str>::from(page));
+        let mut open: VecDeque<Weak<TcpStream>> = VecDeque::new();
         loop {
-            let accepted = match Arc::strong_count(&page) <= MOST {
-                true => self.0.accept().ok(),
-                false => None,
+            let Ok((stream, _)) = self.0.accept() else {
+                thread::sleep(PAUSE); // the system has no room for a connection
+                continue;
             };
-            let page = Arc::clone(&page);
-            let started = accepted.map(|(stream, _)| {
-                thread::Builder::new().stack_size(1 << 18).spawn(move || drop(visit(&stream, port, &page)))
-            });
-            if !matches!(started, Some(Ok(_))) {
-                thread::sleep(PAUSE); // too many connections, or the system has no room for one
+            open.retain(|visitor| visitor.strong_count() > 0);
+            if open.len() >= MOST
+                && let Some(oldest) = open.pop_front().and_then(|oldest| oldest.upgrade())
+            {
+                let _ = oldest.shutdown(Shutdown::Both); // it may have closed itself
+            }
+            let (page, stream) = (Arc::clone(&page), Arc::new(stream));
+            open.push_back(Arc::downgrade(&stream));
+            let started = thread::Builder::new().stack_size(1 << 18).spawn(move || drop(visit(&stream, port, &page)));
+            if started.is_err() {
+                thread::sleep(PAUSE); // the system has no room for a thread
             }
         }
     }
@@ -118,6 +126,7 @@ fn start(mut stream: &TcpStream, status: &str, kind: &str, length: usize) -> Res
 
 fn answer(mut stream: &TcpStream, status: &str, kind: &str, body: Option<&str>) -> Result<()> {
     let (end, body) = (Instant::now() + FOR_ANSWER, body.unwrap_or_default());
+    let end = end + PER_BYTE * u32::try_from(body.len()).unwrap_or(u32::MAX);
     start(stream, status, kind, body.len())?;
     for piece in body.as_bytes().chunks(PIECE) {
         if Instant::now() > end {

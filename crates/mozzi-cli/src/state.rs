@@ -1,7 +1,9 @@
 //! One state of a robot, by flags.
 
+use crate::angles;
 use crate::failure::{Failure, Result};
-use crate::numbers::{WRENCH, array, numbers, numbers_for, wrong_count};
+use crate::numbers::{self, WRENCH, array, wrong_count};
+use crate::text::{Page, page_width, width};
 use clap::Args;
 use mozzi::model::State;
 use mozzi::{Environment, FrameId, Model, Wrench};
@@ -10,7 +12,7 @@ use mozzi::{Environment, FrameId, Model, Wrench};
 pub struct StartArguments {
     /// Positions θ, rad or m, a floating base's pose first; or the name of a state [default: the robot's start,
     /// else joints at 0 and a floating base at {s}]
-    #[arg(long, visible_alias = "q", value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "q", aliases = ["qpos", "positions"], value_name = "θ1,θ2,…", allow_hyphen_values = true)]
     pub theta: Option<String>,
     /// Velocities θ̇, rad/s or m/s; a floating base's twist first, in its own coordinates [default: all 0]
     #[arg(long, visible_alias = "qd", value_name = "θ̇1,θ̇2,…", allow_hyphen_values = true)]
@@ -59,6 +61,11 @@ pub struct Motion {
 }
 
 impl MotionArguments {
+    /// (θ, θ̇).
+    pub fn start(&self, model: &Model) -> Result<(Vec<f64>, Vec<f64>)> {
+        self.start.read(model)
+    }
+
     pub fn read(&self, model: &Model) -> Result<Motion> {
         let (theta, dtheta) = self.start.read(model)?;
         let applied = self.tip.read(model)?;
@@ -73,7 +80,34 @@ impl MotionArguments {
     }
 }
 
+/// The name of a state that is given by numbers, if the robot has no state of this name.
+const GIVEN: &str = "given";
+
 impl StartArguments {
+    /// The name of the state that is asked for.
+    pub fn name<'a>(&'a self, model: &Model) -> Option<&'a str> {
+        let is_state = |text: &&str| model.state_names().any(|name| name == *text);
+        self.state.as_deref().or(self.theta.as_deref().filter(is_state))
+    }
+
+    /// Is a state given?
+    pub fn is_given(&self) -> bool {
+        self.state.is_some() || self.theta.is_some() || self.dtheta.is_some()
+    }
+
+    /// The robot with the given state as its start.
+    pub fn started(&self, model: Model) -> Result<Model> {
+        match &self.state {
+            _ if !self.is_given() => Ok(model),
+            Some(name) => Ok(model.with_start(name)?),
+            None => {
+                let (theta, dtheta) = self.read(&model)?;
+                let state = State { time: 0.0, theta, dtheta };
+                Ok(model.with_state(GIVEN, &state)?.with_start(GIVEN)?)
+            }
+        }
+    }
+
     /// (θ, θ̇).
     pub fn read(&self, model: &Model) -> Result<(Vec<f64>, Vec<f64>)> {
         let [state, theta, dtheta] = [&self.state, &self.theta, &self.dtheta].map(Option::as_deref);
@@ -140,38 +174,50 @@ pub fn check_frames(model: &Model, frames: impl Iterator<Item = FrameId>) -> Res
 
 /// nq numbers, or those of a state by its name; the robot's start if the flag is not given.
 pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
-    let is_name = |text: &str| model.state_names().len() > 0 && numbers(flag, text).is_err() && !text.contains(',');
+    let is_name =
+        |text: &str| model.state_names().len() > 0 && numbers::angle(flag, text).is_err() && !text.contains(',');
     match text {
         None => Ok(model.start().theta),
         Some(name) if is_name(name) => Ok(model.state(name)?.theta),
         Some(text) => {
-            entries(flag, text, model, model.position_names().collect(), "base quaternion (w, x, y, z), base origin")
+            let are_angles = angles::of_positions(model);
+            let layout = "base quaternion (w, x, y, z), base origin";
+            entries(flag, text, model, model.position_names().collect(), layout, &are_angles)
         }
     }
 }
 
 /// n numbers; zeros if the flag is not given.
 pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
-    let base = match flag {
-        "--tau" => "base wrench (m, f)",
-        "--ddtheta" => "base acceleration (ω̇, v̇)",
-        "--x" => "the base's entries",
-        _ => "base twist (ω, v)",
+    let (base, are_rates) = match flag {
+        "--tau" => ("base wrench (m, f)", false),
+        "--ddtheta" => ("base acceleration (ω̇, v̇)", true),
+        "--x" => ("the base's entries", false),
+        _ => ("base twist (ω, v)", true),
     };
+    let are_angles = if are_rates { angles::of_velocities(model) } else { vec![false; model.n()] };
     match text {
         None => Ok(vec![0.0; model.n()]),
-        Some(text) => entries(flag, text, model, model.velocity_names().collect(), base),
+        Some(text) => entries(flag, text, model, model.velocity_names().collect(), base, &are_angles),
     }
 }
 
 /// One number for each name; for a floating base, `layout` describes the entries before the joints.
-fn entries(flag: &str, text: &str, model: &Model, names: Vec<&str>, layout: &str) -> Result<Vec<f64>> {
-    if !model.is_floating() {
-        return numbers_for(flag, text, names.into_iter()); // by name: a ball has several entries
-    }
-    let found = numbers(flag, text)?;
+fn entries(
+    flag: &str,
+    text: &str,
+    model: &Model,
+    names: Vec<&str>,
+    layout: &str,
+    are_angles: &[bool],
+) -> Result<Vec<f64>> {
+    let found = numbers::angles(flag, text, are_angles)?;
     if found.len() == names.len() {
+        angles::question(flag, text, &found, are_angles);
         return Ok(found);
+    }
+    if !model.is_floating() {
+        return Err(numbers::wrong_number(flag, found.len(), &names)); // by name: a ball has several entries
     }
     let joints = match model.joint_names().len() {
         0 => String::new(),
@@ -179,6 +225,25 @@ fn entries(flag: &str, text: &str, model: &Model, names: Vec<&str>, layout: &str
         many => format!(", then {many} joints"),
     };
     Err(wrong_count(flag, found.len(), names.len(), &format!("{layout}{joints}")))
+}
+
+/// Flags with all digits, to paste into another command; a long list goes on in the next line, as shells join them.
+pub fn pasted(page: &mut Page, flags: &[(&str, &[f64])]) {
+    let mut line = if angles::are_degrees() { "--deg".to_string() } else { String::new() };
+    for (flag, values) in flags {
+        line += if line.is_empty() { "" } else { " " };
+        line += flag;
+        line.push('=');
+        for (k, x) in values.iter().enumerate() {
+            let entry = format!("{x:?}{}", if k + 1 < values.len() { "," } else { "" });
+            if width(&line) + entry.len() + 1 > page_width() {
+                page.verbatim(&(line + "\\"));
+                line = String::new();
+            }
+            line += &entry;
+        }
+    }
+    page.verbatim(&line);
 }
 
 /// The model's gravity, and the wrenches that the robot applies.

@@ -1,6 +1,7 @@
 //! The estimated cost of a computation, announced if it is large and refused if it is too large.
 
 use crate::failure::{self, Failure, Result};
+use mozzi::Model;
 
 /// More steps or bytes need a flag.
 const STEPS: f64 = 1e9;
@@ -22,6 +23,29 @@ pub struct Workload {
     pub place: String,
     /// The flag that allows it.
     pub flag: Option<&'static str>,
+}
+
+/// Largest matrix n × n, bytes.
+const MATRIX: f64 = 1e9;
+/// Multiplications per second, to estimate the time of a factorization.
+const RATE: f64 = 1e9;
+
+/// Refuses a robot whose matrices n × n are too large, and announces one whose factorizations take long.
+pub fn matrices(model: &Model) -> Result<()> {
+    let n = model.n() as f64;
+    let (bytes, seconds) = (BINARY * n * n, n * n * n / 6.0 / RATE);
+    if bytes > MATRIX {
+        let most = (MATRIX / BINARY).sqrt();
+        return Err(Failure::wrong(format!(
+            "the robot has {n} velocities, and a matrix n × n takes {}; expected at most {most:.0} velocities, {}",
+            size(bytes),
+            size(MATRIX)
+        )));
+    }
+    if seconds > 1.0 {
+        failure::note(&format!("the robot has {n} velocities: a factorization of M takes about {seconds:.0} s"));
+    }
+    Ok(())
 }
 
 impl Workload {

@@ -112,7 +112,7 @@ fn wrong_usage_is_told() {
     let rest = ["--lang", "c", "--out", "x"];
     usage(
         &[&["ur5", "--quantity", "inverse-dynamic"][..], &rest].concat(),
-        &["inverse-dynamic'", "'inverse-dynamics'"],
+        &["`inverse-dynamic`", "`inverse-dynamics`"],
     );
     usage(&[&["ur5"][..], &rest].concat(), &["--quantity"]);
     usage(&[&["ur5", "--quantity", "mass-matrix", "--argument", "mass"][..], &rest].concat(), &["wrench=FRAME"]);

@@ -7,7 +7,7 @@ use crate::common;
 use common::{complaint, file, folder, mozzi};
 use serde_json::Value;
 
-const PEERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-compare/tests/peers");
+const PEERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-report/tests/peers");
 
 /// A program that replaces Python.
 #[cfg(unix)]

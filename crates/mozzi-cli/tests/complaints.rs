@@ -186,7 +186,7 @@ fn wrong_frames_and_tasks() {
     wrong(&["screws", "panda", "--python", "--end-effector", "panda_hand_tcp"], &["serial chains"]);
     wrong(&["terms", "ur5", "--task", "vx,vw"], &["no row `vw`", "wx, wy, wz"]);
     // a singular task gives a note; all other terms are there
-    let output = mozzi(&["terms", "ur5", "--task", "wx,vx"]);
+    let output = mozzi(&["terms", "ur5", "--task", "wx,vx", "--all"]);
     let (page, said) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success() && said.contains("note: Λ and η are omitted: the task is singular"), "{said}");
     assert!(page.contains("left out: the task is singular in this state") && page.contains("∂θ̈/∂τ = M⁻¹"), "{page}");

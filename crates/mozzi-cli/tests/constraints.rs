@@ -63,7 +63,7 @@ fn a_benchmark_has_the_quantities_of_the_robot() {
     let folder = folder("constraints-bench");
     let at_its_end = r#""link2", "xyz": [0.7, 0, 0]"#;
     let rod = file(&folder, "rod.json", &ROD.replace(r#""link2""#, at_its_end));
-    let size = ["--states", "8", "--rounds", "1", "--threads", "1"];
+    let size = ["--states", "8", "--rounds", "1", "--threads", "1", "--all"];
     let timed = |arguments: &[&str]| {
         let found = json(&[&["bench", "two_link_planar"], arguments, &size].concat());
         let timings = found["timings"].as_array().expect("a list").clone();

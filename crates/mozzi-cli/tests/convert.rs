@@ -66,7 +66,7 @@ fn python_and_what_cannot_be_converted() {
 #[test]
 fn mjcf_is_read_by_every_command() {
     let folder = folder("mjcf");
-    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-compare/tests/peers/springs.xml");
+    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-report/tests/peers/springs.xml");
     let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
     assert!(text(&["convert", robot, &path("springs.json")]).contains("2 independent joints"));
     let read: serde_json::Value =
@@ -98,7 +98,7 @@ fn json_is_checked() {
     let robot = folder.join("tree.json").to_str().expect("text").to_string();
     text(&["convert", TREE, &robot]);
     text(&["check", &robot]);
-    let odd = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-compare/tests/peers/doctor.urdf");
+    let odd = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-report/tests/peers/doctor.urdf");
     let path = folder.join("odd.json").to_str().expect("text").to_string();
     text(&["convert", odd, &path]);
     let lines = text(&["check", &path, "--json"]);

@@ -3,7 +3,7 @@
 use crate::common;
 
 use common::{assert_close, complaint, file, folder, json, mozzi, numbers, text};
-use mozzi::simulation::{Options, Zero};
+use mozzi_sim::{Options, Zero};
 
 const SWING: [&str; 6] = ["simulate", "double_pendulum", "--theta", "2,1", "--time", "3"];
 
@@ -12,9 +12,14 @@ const SWING: [&str; 6] = ["simulate", "double_pendulum", "--theta", "2,1", "--ti
 fn root(guess: f64, g: impl Fn(&[f64], &[f64]) -> f64) -> f64 {
     let model = mozzi_urdf::open("double_pendulum").expect("embedded").build().expect("sound");
     let at = |t: f64| {
-        let motion = model
-            .simulate(&[2.0, 1.0], &[0.0; 2], Zero, &Options { record_every: 3000, ..Options::new(t, 3000) })
-            .expect("a motion");
+        let motion = mozzi_sim::simulate(
+            &model,
+            &[2.0, 1.0],
+            &[0.0; 2],
+            Zero,
+            &Options { record_every: 3000, ..Options::new(t, 3000) },
+        )
+        .expect("a motion");
         g(motion.last().theta, motion.last().dtheta)
     };
     let (mut a, mut b) = ((guess - 1e-4, at(guess - 1e-4)), (guess + 1e-4, at(guess + 1e-4)));

@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{complaint, file, folder, json, rows, text};
 use mozzi::Model;
-use mozzi::simulation::{Method, Options, Simulation, Zero};
+use mozzi_sim::{Method, Options, Simulation, Zero};
 
 const ARM: &str = r#"<robot name="stuck">
   <link name="base"/>
@@ -87,10 +87,20 @@ fn what_is_wrong_with_contacts_is_said() {
     let cube = file(&folder("ground_wrong"), "cube.urdf", CUBE);
     let folder = folder("ground_wrong_files");
     for (k, (contacts, expected)) in [
-        (r#"{"points": [{"frame": "cube", "frictoin": 0.0}]}"#, "unknown `frictoin`, expected frame, at"),
-        (r#"{"points": {"frame": "cube"}}"#, "`points` is no list"),
-        (r#"{"points": [{"frame": "cube"}], "planes": "floor"}"#, "`planes` is no list"),
-        (r#"{"points": [{"frame": "cube", "at": [0, null, 0, "x", -0.5]}]}"#, "`at` is not [x, y, z]"),
+        (
+            r#"{"points": [{"frame": "cube", "frictoin": 0.0}]}"#,
+            "0.json:1:31: `frictoin` is not an entry of points[0], did you mean `friction`?",
+        ),
+        (r#"{"points": {"frame": "cube"}}"#, "1.json:1:2: points is {\"frame\":\"cube\"}, expected a list"),
+        (r#"{"points": [{"frame": "cube"}], "planes": "floor"}"#, "2.json:1:33: planes is \"floor\", expected a list"),
+        (
+            r#"{"points": [{"frame": "cube", "at": [0, null, 0, "x", -0.5]}]}"#,
+            "points[0].at[1] is null, expected a number",
+        ),
+        (r#"{"points": [7]}"#, "points[0] is 7, expected an object"),
+        (r#"{"points": [{"frame": "cube", "frame": "cube"}]}"#, "`frame` is given twice"),
+        (r#"{"points": [{"frame": "cub"}]}"#, "6.json:1:14: there is no frame `cub`; this robot has `cube`"),
+        (r#"{"planes": [{"pose": [1, 1, 0, 0, 0, 0, 0]}]}"#, "with a unit quaternion"),
         (r#"{"points": [{"frame": "cube", "friction": 1e300}]}"#, "1e300 of contact point `cube`, expected 0 to 1e6"),
     ]
     .into_iter()

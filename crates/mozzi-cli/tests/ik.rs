@@ -55,7 +55,7 @@ fn wrong_goals() {
         assert!(code == 1 && words.iter().all(|word| message.contains(word)), "{message}");
     };
     wrong(&[], &["the goal is missing", "--position"]);
-    wrong(&["--position", "3,0,0", "--starts", "2"], &["`tool0` did not reach its goal", "2 starts"]);
+    wrong(&["--position", "3,0,0", "--starts", "2"], &["m out of reach", "leaves `tool0`", "2 starts"]);
     wrong(&["--quaternion", "1,1,0,0"], &["--quaternion", "length is 1.41"]);
     wrong(&["--position", "1,2"], &["2 entries, expected 3"]);
     wrong(&["--position", "0.3,0,0.3", "--angle", "0"], &["angle is 0"]);

@@ -81,7 +81,9 @@ fn joints_are_followed_while_the_base_falls() {
         json(&flags)
     };
     // the table with the base is followed as well as that of the joints alone
-    let (found, again) = (follow(way), follow(fall));
+    let found = follow(way);
+    let before = file(&folder, "before.csv", &std::fs::read_to_string(fall).expect("a table"));
+    let again = follow(&before);
     for found in [&found, &again] {
         let worst = numbers(&found["tracking_error"]["largest"]);
         assert!(worst.len() == 6 && worst.iter().all(|&e| e < 0.5), "{worst:?}");
@@ -245,8 +247,8 @@ fn wrong_motions() {
     for (text, words) in [
         ("{", "is not valid JSON"),
         ("{}", "`controller` is missing"),
-        (r#"{"controller": "pid"}"#, "is `pid`, expected one of `pd-gravity`"),
-        (r#"{"controller": 3}"#, "controller: is 3, expected one of `pd-gravity`"),
+        (r#"{"controller": "pid"}"#, "bad.json:1:2: controller is \"pid\", expected one of `pd-gravity`"),
+        (r#"{"controller": 3}"#, "controller is 3, expected one of `pd-gravity`"),
         (
             r#"{"controller": "pd-gravity", "p": 1, "d": 1, "model": "no.urdf"}"#,
             "bad.json:1:46: model: `no.urdf` is neither a file",
@@ -258,11 +260,11 @@ fn wrong_motions() {
         (r#"{"controller": "pd-gravity", "p": 1}"#, "`d` is missing"),
         (
             r#"{"controller": "pd-gravity", "p": 1, "d": 1, "i": 1}"#,
-            "bad.json:1:46: `i` is not an entry of `pd-gravity`",
+            "bad.json:1:46: `i` is not an entry of the controller's file",
         ),
         (
             "{\"controller\": \"pd-gravity\", \"p\": 1,\n \"D\": 1}",
-            "bad.json:2:2: `D` is not an entry of `pd-gravity`, did",
+            "bad.json:2:2: `D` is not an entry of the controller's file, did",
         ),
         (r#"{"controller": "pd-gravity", "p": [1, 2], "d": 1}"#, "expected a number, or a list of 6"),
         (r#"{"controller": "pd-gravity", "p": -1, "d": 1}"#, "K_p"),

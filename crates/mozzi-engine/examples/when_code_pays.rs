@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut theta = Vec::new();
         for _ in 0..STATES {
             let mut at = model.neutral_configuration();
-            mozzi::integrate(&model, &mut at, &random.vector(n, 1.0), 1.0);
+            mozzi::model::integrate(&model, &mut at, &random.vector(n, 1.0), 1.0);
             theta.extend(at);
         }
         let [dtheta, ddtheta, x] = [1.0, 1.0, 5.0].map(|size| random.vector(STATES * n, size));

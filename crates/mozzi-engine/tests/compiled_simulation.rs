@@ -5,11 +5,10 @@ use crate::common;
 
 use common::{error, robots, state};
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{
-    Equation, Friction, GravityCompensation, Input, Method, Options, Simulation, Zero, applied, torque,
-};
-use mozzi::{Error, Model, Trajectory, Vec3, Wrench};
+use mozzi::{Model, Vec3, Wrench};
 use mozzi_engine::{Compiled, compile};
+use mozzi_sim::{Equation, Friction, GravityCompensation, Input, Method, Options, Simulation, Zero, applied, torque};
+use mozzi_sim::{Error, Trajectory};
 use std::ops::ControlFlow;
 
 fn compiled(model: &Model) -> Compiled {
@@ -31,7 +30,7 @@ fn a_motion_is_the_kernels() {
             let friction = Friction::Smooth { slip_speed: 1.0 };
             let options = Options { method, friction, ..Options::new(4e-4, 40) }; // the robots' damped wrists are stiff
             let found = end(robot.simulate(theta, dtheta, motors(), &options));
-            let expected = end(model.simulate(theta, dtheta, motors(), &options));
+            let expected = end(mozzi_sim::simulate(&model, theta, dtheta, motors(), &options));
             let error = error(&found, &expected);
             assert!(error < 1e-9, "{name}, {}: {error:e}", method.name());
         }
@@ -47,13 +46,13 @@ fn another_gravity_and_contact_go_to_the_kernels() {
     let held = || GravityCompensation::against(&model, moon.gravity.expect("given"));
     assert_eq!(
         end(robot.simulate(&theta, &dtheta, held(), &moon)),
-        end(model.simulate(&theta, &dtheta, held(), &moon))
+        end(mozzi_sim::simulate(&model, &theta, &dtheta, held(), &moon))
     );
     let push = || applied(frame, |_, _, _| Wrench::from_array([0.1, 0.2, -0.3, 4.0, -5.0, 6.0]));
     let here = Options::new(0.1, 50);
     assert_eq!(
         end(robot.simulate(&theta, &dtheta, push(), &here)),
-        end(model.simulate(&theta, &dtheta, push(), &here))
+        end(mozzi_sim::simulate(&model, &theta, &dtheta, push(), &here))
     );
 }
 
@@ -62,7 +61,10 @@ fn what_cannot_be_is_refused_as_by_the_model() {
     let model = common::tree(4, 6, 1).build().expect("sound");
     let (robot, [theta, dtheta, _], options) = (compiled(&model), state(&model, 2), Options::new(0.1, 10));
     let both = |theta: &[f64], dtheta: &[f64], input: fn() -> Box<dyn Input>, options: &Options| {
-        let errors = [robot.simulate(theta, dtheta, input(), options), model.simulate(theta, dtheta, input(), options)];
+        let errors = [
+            robot.simulate(theta, dtheta, input(), options),
+            mozzi_sim::simulate(&model, theta, dtheta, input(), options),
+        ];
         let [found, expected] = errors.map(|motion| motion.expect_err("refused").to_string());
         assert_eq!(found, expected);
     };
@@ -104,5 +106,5 @@ fn not_compiled_it_is_the_kernels() {
     assert!(robot.simulator().is_none());
     let ([theta, dtheta, _], options) = (state(&model, 2), Options::new(0.1, 10));
     let found = end(robot.simulate(&theta, &dtheta, Zero, &options));
-    assert_eq!(found, end(model.simulate(&theta, &dtheta, Zero, &options)));
+    assert_eq!(found, end(mozzi_sim::simulate(&model, &theta, &dtheta, Zero, &options)));
 }

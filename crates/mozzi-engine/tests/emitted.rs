@@ -11,7 +11,7 @@ use mozzi::quantities::{
     InverseDynamicsDerivatives, JointFriction, MassMatrix, MassMatrixProductDerivative, Momentum, PotentialEnergy,
     Query, Regressor, SpaceJacobian, SpringForces, TaskSpaceDynamics,
 };
-use mozzi::testing::Random;
+use mozzi::random::Random;
 use mozzi::{Base, Model, Scalar, Task, TaskFrame, Vec3};
 use mozzi_engine::{
     Arguments, Derivative, EmitError, Language, Precision, Program, Traced, emit, emit_programs, record,

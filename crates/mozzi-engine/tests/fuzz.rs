@@ -3,7 +3,7 @@
 #![allow(missing_docs)]
 
 use mozzi::Scalar;
-use mozzi::testing::Random;
+use mozzi::random::Random;
 use mozzi_engine::{Form, Kernel, Program, Shape, Traced, record};
 use std::time::{Duration, Instant};
 

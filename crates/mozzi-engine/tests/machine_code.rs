@@ -6,8 +6,8 @@ use crate::common;
 use common::{error, inputs, quantities, robots, state, tolerance};
 use mozzi::Model;
 use mozzi::quantities::Query;
+use mozzi::random::Random;
 use mozzi::scalar::Float as Number;
-use mozzi::testing::Random;
 use mozzi_engine::{Arguments, Form, Kernel, Program, Refusal, Shape, record, record_quantity};
 
 /// The outputs of each lane, and the sums of squares, for one state in each lane.

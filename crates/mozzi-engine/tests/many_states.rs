@@ -5,10 +5,10 @@ use mozzi::quantities::{
     CenterOfMassJacobian, ConstraintJacobian, ConstraintResidual, ForwardDynamics, GravityForces, InverseDynamics,
     MassMatrix, Query, Regressor, TaskSpaceDynamics,
 };
-use mozzi::simulation::{Method, Options};
 use mozzi::testing::{Random, floating_tree, four_bar, state, tree};
 use mozzi::{Model, Task, TaskFrame};
 use mozzi_engine::{Batch, BatchEnvironment, Number};
+use mozzi_sim::{Method, Options};
 
 use crate::ways::ways;
 
@@ -136,15 +136,15 @@ fn many_robots_move_as_each_alone() {
         let environment = BatchEnvironment::from(model.environment());
         let (duration, steps) = (0.02, 4);
         for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4] {
-            for (way, batch) in ways(&model, &[mozzi::simulation::forward_dynamics_of(&model)]) {
+            for (way, batch) in ways(&model, &[mozzi_sim::forward_dynamics_of(&model)]) {
                 let (mut q, mut v) = (states.theta.clone(), states.dtheta.clone());
                 batch.simulate(&mut q, &mut v, &states.x, &environment, method, duration, steps).unwrap();
                 for k in [0, 17, 600] {
                     let tau = states.x[k * n..][..n].to_vec();
-                    let input = mozzi::simulation::torque(|_t, _q, _v, out| out.copy_from_slice(&tau));
+                    let input = mozzi_sim::torque(|_t, _q, _v, out| out.copy_from_slice(&tau));
                     let options = Options { method, ..Options::new(duration, steps) };
                     let (q0, v0) = (&states.theta[k * nq..][..nq], &states.dtheta[k * n..][..n]);
-                    let alone = model.simulate(q0, v0, input, &options).unwrap();
+                    let alone = mozzi_sim::simulate(&model, q0, v0, input, &options).unwrap();
                     let end = alone.last();
                     for (a, b) in
                         q[k * nq..][..nq].iter().chain(&v[k * n..][..n]).zip(end.theta.iter().chain(end.dtheta.iter()))

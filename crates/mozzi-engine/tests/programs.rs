@@ -121,7 +121,7 @@ fn rates_are_those_of_dual_numbers() {
             let found = program.evaluate(&[&values[..], &rates].concat());
 
             let seeded = plain.inputs().iter().zip(values.iter().zip(&rates)).map(|(array, (x, rate))| {
-                if array.name == "theta" { mozzi::seed_direction(&model, x, rate) } else { Dual::list(x, rate) }
+                if array.name == "theta" { mozzi::model::seed_direction(&model, x, rate) } else { Dual::list(x, rate) }
             });
             let seeded: Vec<Vec<Dual>> = seeded.collect();
             let expected = plain.evaluate(&seeded.iter().map(Vec::as_slice).collect::<Vec<_>>());

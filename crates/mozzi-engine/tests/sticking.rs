@@ -1,9 +1,9 @@
 //! Robots with dry friction in batches: each moves as alone, to the bit, and what friction holds stays.
 
-use mozzi::simulation::{ContactPoint, Contacts, Input, Method, Options, Plane, Simulation, torque};
 use mozzi::testing::{floating_tree, state, tree};
 use mozzi::{Model, Vec3, Wrench};
 use mozzi_engine::{Batch, BatchEnvironment};
+use mozzi_sim::{ContactPoint, Contacts, Input, Method, Options, Plane, Simulation, torque};
 use std::ops::ControlFlow;
 
 const ROBOTS: usize = 13;
@@ -38,7 +38,8 @@ fn many_robots_with_dry_friction_move_as_each_alone() {
                 let own = &tau[k * n..][..n];
                 let motors = torque(|_, _, _, out| out.iter_mut().zip(own).for_each(|(out, x)| *out += x));
                 let options = Options { method, ..Options::new(duration, steps) };
-                let alone = model.simulate(&theta[k * nq..][..nq], &dtheta[k * n..][..n], motors, &options);
+                let alone =
+                    mozzi_sim::simulate(&model, &theta[k * nq..][..nq], &dtheta[k * n..][..n], motors, &options);
                 let alone = alone.expect("a motion");
                 assert_eq!(&q[k * nq..][..nq], alone.last().theta, "{}", method.name());
                 assert_eq!(&v[k * n..][..n], alone.last().dtheta, "{}", method.name());
@@ -103,7 +104,7 @@ fn environments_and_parameters_of_each_robot_count() {
     for k in 0..ROBOTS {
         struct Own<'a>(&'a [f64], mozzi::FrameId, Wrench);
         impl Input for Own<'_> {
-            fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+            fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
                 tau.iter_mut().zip(self.0).for_each(|(tau, x)| *tau += x);
                 Ok(())
             }
@@ -113,7 +114,7 @@ fn environments_and_parameters_of_each_robot_count() {
                 _: &[f64],
                 _: &[f64],
                 wrenches: &mut Vec<(mozzi::FrameId, Wrench)>,
-            ) -> Result<(), mozzi::Error> {
+            ) -> Result<(), mozzi_sim::Error> {
                 wrenches.push((self.1, self.2));
                 Ok(())
             }
@@ -123,7 +124,8 @@ fn environments_and_parameters_of_each_robot_count() {
         let g = Vec3([gravity[3 * k], gravity[3 * k + 1], gravity[3 * k + 2]]);
         let options = Options { gravity: Some(g), ..Options::new(0.05, 20) };
         let start = [&theta[k * nq..][..nq], &dtheta[k * n..][..n]];
-        let alone = own.simulate(start[0], start[1], Own(&tau[k * n..][..n], frame, F), &options).expect("a motion");
+        let alone = mozzi_sim::simulate(&own, start[0], start[1], Own(&tau[k * n..][..n], frame, F), &options)
+            .expect("a motion");
         assert_eq!(&q[k * nq..][..nq], alone.last().theta);
         assert_eq!(&v[k * n..][..n], alone.last().dtheta);
     }
@@ -149,19 +151,19 @@ fn robots_with_contacts_run_each_as_alone() {
     let simulation = |_| Simulation { contacts: contacts(), ..Simulation::new(Options::new(0.1, 50)) };
     let batch = Batch::new(&model).with_threads(2).expect("threads");
     let go_on = |_| ControlFlow::Continue(());
-    let runs = batch.simulate_each([&theta, &dtheta], simulation, |_| Box::new(mozzi::simulation::Zero), go_on);
+    let runs = batch.simulate_each([&theta, &dtheta], simulation, |_| Box::new(mozzi_sim::Zero), go_on);
     let runs = runs.expect("motions");
     assert_eq!(runs.len(), ROBOTS);
     for (k, run) in runs.iter().enumerate() {
         let start = [&theta[k * nq..][..nq], &dtheta[k * n..][..n]];
-        let alone = simulation(k).run(&model, start[0], start[1], mozzi::simulation::Zero).expect("a motion");
+        let alone = simulation(k).run(&model, start[0], start[1], mozzi_sim::Zero).expect("a motion");
         assert_eq!(*run, alone);
     }
     assert!(runs.iter().filter(|run| !run.contact_events.is_empty()).count() > ROBOTS / 2);
     // the first that fails is named; progress may stop all
     let mut broken = dtheta.clone();
     broken[3 * n] = f64::NAN;
-    let zero = |_| -> Box<dyn Input> { Box::new(mozzi::simulation::Zero) };
+    let zero = |_| -> Box<dyn Input> { Box::new(mozzi_sim::Zero) };
     let error = batch.simulate_each([&theta, &broken], simulation, zero, go_on).expect_err("NaN");
     assert!(error.to_string().starts_with("state 3 (counted from 0)"), "{error}");
     let stopped = batch.simulate_each([&theta, &dtheta], simulation, zero, |_| ControlFlow::Break(()));

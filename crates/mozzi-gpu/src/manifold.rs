@@ -1,6 +1,6 @@
 //! The text of ⊕, ⊖ and the rate of the logarithm, as of [`mozzi::kinematics`] on the CPU, for a robot's θ.
 
-use mozzi::kinematics::ConfigurationSpace;
+use mozzi::model::ConfigurationSpace;
 use mozzi::{Freedom, Place};
 
 /// Device functions of the ROBOT, of NUMBERs.

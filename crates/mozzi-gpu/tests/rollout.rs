@@ -5,11 +5,11 @@ use crate::common;
 
 use common::host::{self, Call, exists, run};
 use common::{LAYOUTS, PRECISIONS, embedded, error, nvrtc, transposed};
-use mozzi::simulation::{Method, Rollout};
 use mozzi::testing::{Random, four_bar, state};
 use mozzi::{Base, Model};
 use mozzi_engine::{CudaLayout, Precision};
 use mozzi_gpu::{Arch, Source};
+use mozzi_sim::{Method, Rollout};
 
 const ROBOTS: usize = 37;
 const STEPS: usize = 12;
@@ -59,7 +59,7 @@ fn expected(model: &Model, case: &Case, has_feedback: bool) -> [Vec<f64>; 2] {
             let mut tau = case.tau[(i * STEPS + step) * n..][..n].to_vec();
             if has_feedback {
                 let mut difference = vec![0.0; n];
-                mozzi::difference(model, &x[0], theta_d, &mut difference);
+                mozzi::model::difference(model, &x[0], theta_d, &mut difference);
                 difference.extend(x[1].iter().zip(dtheta_d).map(|(x, target)| target - x));
                 for (j, tau) in tau.iter_mut().enumerate() {
                     *tau += case.gains[j * 2 * n..].iter().zip(&difference).map(|(g, d)| g * d).sum::<f64>();

@@ -91,6 +91,9 @@ pub enum Error {
     /// The result cannot be a robot.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
+    /// A simulation of the robot.
+    #[error(transparent)]
+    Simulation(#[from] mozzi_sim::Error),
 }
 
 impl Error {

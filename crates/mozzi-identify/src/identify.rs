@@ -111,9 +111,9 @@ pub fn identify<'m>(
     without_constraints(model)?;
     if options.choice.gains && logs.iter().all(|log| log.payload.is_none()) {
         return Err(Error::BadOption {
-            option: "drive gains",
-            found: "no log has a known payload".into(),
-            expected: "at least one log with a payload of known mass".into(),
+            option: "the number of logs with a known payload",
+            found: "0".into(),
+            expected: "at least 1: drive gains, in N m/A, need a known mass".into(),
         });
     }
     let setup = Setup::new(model, options.choice.clone(), options.prior, &options.limits)?;

@@ -7,7 +7,7 @@ use crate::predict::parameters;
 use crate::signals::Samples;
 use crate::{Error, Identification};
 use mozzi::Model;
-use mozzi::simulation::{Friction, Method, Rollout};
+use mozzi_sim::{Friction, Method, Rollout};
 use nalgebra::DVector;
 
 /// How rollouts are compared.

@@ -1,8 +1,8 @@
 //! The time of a step of a standing ANYmal: `cargo run --release -p mozzi-motion --example contact_speed`, next to
 //! MuJoCo's mj_step by `python crates/mozzi-motion/examples/contact_speed.py`.
 
-use mozzi::simulation::{ContactPoint, Contacts, Input, Options, Plane, Simulation};
 use mozzi::{Error, Vec3};
+use mozzi_sim::{ContactPoint, Contacts, Input, Options, Plane, Simulation};
 use std::time::Instant;
 
 const POSE: [f64; 12] = [0.0, 0.7, -1.0, 0.0, 0.7, -1.0, 0.0, -0.7, 1.0, 0.0, -0.7, 1.0];
@@ -10,7 +10,7 @@ const POSE: [f64; 12] = [0.0, 0.7, -1.0, 0.0, 0.7, -1.0, 0.0, -0.7, 1.0, 0.0, -0
 struct Springs;
 
 impl Input for Springs {
-    fn torque(&mut self, _: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
+    fn torque(&mut self, _: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         (0..12).for_each(|j| tau[6 + j] += 400.0 * (POSE[j] - theta[7 + j]) - 10.0 * dtheta[6 + j]);
         Ok(())
     }

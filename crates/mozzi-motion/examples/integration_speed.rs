@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p mozzi-motion --example integration_speed [RUNS]`
 
-use mozzi::simulation::{Method, Options, torque};
+use mozzi_sim::{Method, Options, torque};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -27,7 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for method in [Method::Euler, Method::SemiImplicitEuler, Method::RungeKutta4, Method::Midpoint, adaptive] {
         // rows are recorded every 100 steps, energies with them
         let options = Options { method, record_every: 100, ..Options::new(10.0, 10_000) };
-        let (seconds, drift) = least(&|| Ok(panda.simulate(&start, &still, brake(), &options)?.largest_drift()))?;
+        let (seconds, drift) =
+            least(&|| Ok(mozzi_sim::simulate(&panda, &start, &still, brake(), &options)?.largest_drift()))?;
         let by = if method.is_adaptive() { "to 1e-6" } else { "1 ms" };
         println!("{:40} {:8.2} {:18.1e}", format!("{}, {by}", method.name()), 1e3 * seconds, drift);
     }

@@ -3,8 +3,9 @@
 //!
 //! `cargo run --release -p mozzi-motion --example reach [POSES]`
 
-use mozzi::testing::Random;
-use mozzi::{Model, forward_kinematics};
+use mozzi::Model;
+use mozzi::kinematics::forward_kinematics;
+use mozzi::random::Random;
 use mozzi_motion::inverse_kinematics::{Method, Options};
 use mozzi_motion::{Goal, InverseKinematics};
 use std::f64::consts::PI;

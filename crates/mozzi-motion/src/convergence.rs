@@ -1,8 +1,9 @@
 //! Accuracy and cost of each simulation method.
 
 use crate::error::check;
-use mozzi::simulation::{Method, Options, Policy, Simulation, dormand_prince_by_equal_steps, torque};
-use mozzi::{Error, Model, difference};
+use mozzi::Model;
+use mozzi::model::difference;
+use mozzi_sim::{Error, Method, Options, Policy, Simulation, dormand_prince_by_equal_steps, torque};
 use std::cell::Cell;
 
 /// The reference, by Dormand-Prince, takes this many times the steps of the finest motion that is compared with it.
@@ -59,7 +60,7 @@ impl Convergence {
 /// `progress(done, all)` counts evaluations of θ̈; `all` is an estimate.
 ///
 /// # Errors
-/// [`mozzi::Error`]s as for [`Model::simulate`].
+/// Those of [`mozzi_sim::simulate`].
 pub fn convergence(
     model: &Model,
     [theta, dtheta]: [&[f64]; 2],

@@ -10,6 +10,9 @@ pub enum Error {
     /// An error of the robot's model.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
+    /// A simulation of the robot.
+    #[error(transparent)]
+    Simulation(#[from] mozzi_sim::Error),
     /// Inverse kinematics ended before the goal.
     #[error(
         "frame `{frame}` did not reach its goal: the best of {starts} starts, {iterations} iterations in all, is {residual} away{}, at θ = {theta:?}",

@@ -1,5 +1,5 @@
 //! Motions for the robots of [`mozzi`]: joint positions that reach a goal ([`inverse_kinematics`]), motions in time
-//! ([`trajectories`]), and motors that follow them ([`controllers`]). [`mozzi::simulation`] simulates the resulting
+//! ([`trajectories`]), and motors that follow them ([`controllers`]). [`mozzi_sim`] simulates the resulting
 //! motion; [`convergence`] measures the accuracy of its methods.
 //!
 //! ```
@@ -22,4 +22,4 @@ pub mod trajectories;
 
 pub use error::Error;
 pub use inverse_kinematics::{Goal, InverseKinematics};
-pub use mozzi::simulation::Policy;
+pub use mozzi_sim::Policy;

@@ -3,7 +3,7 @@
 use crate::failure::{of_loader, of_model};
 use crate::load;
 use crate::model::PyModel;
-use mozzi_compare::{Comparison, Error, Options, Source, ask, compare};
+use mozzi_report::compare::{Comparison, Error, Options, Source, ask, compare};
 use mozzi_urdf::LoadError;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -27,7 +27,7 @@ pub fn _compare(
     python: PathBuf,
     policy: &str,
 ) -> PyResult<(String, String, bool, bool)> {
-    let options = Options { python, states, seed, time_limit: mozzi_compare::TIME_LIMIT };
+    let options = Options { python, states, seed, time_limit: mozzi_report::compare::TIME_LIMIT };
     let report = |c: &Comparison| (c.text(), c.json().to_string(), c.agrees(), c.is_explained());
     if let Ok(model) = robot.cast::<PyModel>() {
         let model = &model.get().robot().model;

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 type Pose = [[f64; 4]; 4];
 type LinkState = (String, [f64; 10]);
-type LimitState = (Option<[f64; 2]>, Option<f64>, Option<f64>);
+type LimitState = (Option<[f64; 2]>, Option<f64>, Option<f64>, Option<f64>);
 type MimicState = Option<(String, f64, f64)>;
 /// A joint's kind, and its numbers: a screw axis, a ball's centre.
 type KindState = (String, Vec<f64>);
@@ -50,7 +50,7 @@ pub fn to_state(robot: &Description) -> State {
             JointKind::Ball(center) => (BALL, center.0.to_vec()),
             JointKind::Free => (FREE, Vec::new()),
         };
-        let Limits { position, velocity, effort } = joint.limits;
+        let Limits { position, velocity, effort, acceleration } = joint.limits;
         let mimic = joint.mimic.as_ref().map(|mimic| (mimic.joint.clone(), mimic.ratio, mimic.offset));
         (
             joint.name.clone(),
@@ -58,7 +58,7 @@ pub fn to_state(robot: &Description) -> State {
             joint.child.clone(),
             joint.origin.to_matrix(),
             (kind.to_string(), numbers),
-            (position, velocity, effort),
+            (position, velocity, effort, acceleration),
             [joint.damping, joint.friction, joint.armature, joint.stiffness, joint.spring_reference],
             mimic,
         )
@@ -98,7 +98,9 @@ pub fn from_state(
     for (name, parameters) in links {
         robot = robot.link(name, SpatialInertia::from_parameters(parameters));
     }
-    for (name, parent, child, origin, (kind, axis), (position, velocity, effort), numbers, mimic) in joints {
+    for (name, parent, child, origin, (kind, axis), (position, velocity, effort, acceleration), numbers, mimic) in
+        joints
+    {
         let kind = match (kind.as_str(), axis.as_slice()) {
             (FIXED, []) => JointKind::Fixed,
             (SCREW, &[a, b, c, x, y, z]) => {
@@ -111,7 +113,7 @@ pub fn from_state(
             }
         };
         let mut joint = Joint::new(name, parent, child, pose(origin)?, kind);
-        joint.limits = Limits { position, velocity, effort };
+        joint.limits = Limits { position, velocity, effort, acceleration };
         [joint.damping, joint.friction, joint.armature, joint.stiffness, joint.spring_reference] = numbers;
         joint.mimic = mimic.map(|(joint, ratio, offset)| Mimic { joint, ratio, offset });
         robot = robot.joint(joint);

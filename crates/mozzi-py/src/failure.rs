@@ -32,15 +32,19 @@ create_exception!(
      speed."
 );
 
-/// An error of the library.
-pub fn of_model(error: mozzi::Error) -> PyErr {
+/// An error of the library, or of a simulation.
+pub fn of_model(error: impl Into<mozzi_sim::Error>) -> PyErr {
+    let error = error.into();
     raised(&error, error.to_string())
 }
 
-fn raised(error: &mozzi::Error, text: String) -> PyErr {
+fn raised(error: &mozzi_sim::Error, text: String) -> PyErr {
+    use mozzi::Error as Of;
     match error {
-        mozzi::Error::SingularMassMatrix { .. } | mozzi::Error::SingularTask { .. } => SingularError::new_err(text),
-        mozzi::Error::Diverged { .. } => DivergedError::new_err(text),
+        mozzi_sim::Error::Model(Of::SingularMassMatrix { .. } | Of::SingularTask { .. }) => {
+            SingularError::new_err(text)
+        }
+        mozzi_sim::Error::Diverged { .. } => DivergedError::new_err(text),
         _ => PyValueError::new_err(text),
     }
 }
@@ -49,6 +53,7 @@ fn raised(error: &mozzi::Error, text: String) -> PyErr {
 pub fn of_motion(error: mozzi_motion::Error) -> PyErr {
     match error {
         mozzi_motion::Error::Model(error) => of_model(error),
+        mozzi_motion::Error::Simulation(error) => of_model(error),
         other => MotionError::new_err(other.to_string()),
     }
 }
@@ -67,13 +72,15 @@ pub fn of_batch(error: mozzi_engine::Error, leading: &[usize]) -> PyErr {
     match error {
         mozzi_engine::Error::State { index, source } => of_state(source, index, leading),
         mozzi_engine::Error::Model(error) => of_model(error),
+        mozzi_engine::Error::Simulation(error) => of_model(error),
         error @ mozzi_engine::Error::Threads { .. } => PyRuntimeError::new_err(error.to_string()),
         error => PyValueError::new_err(error.to_string()),
     }
 }
 
 /// The error of one of many states.
-pub fn of_state(error: mozzi::Error, index: usize, leading: &[usize]) -> PyErr {
+pub fn of_state(error: impl Into<mozzi_sim::Error>, index: usize, leading: &[usize]) -> PyErr {
+    let error = error.into();
     if leading.is_empty() {
         return of_model(error);
     }

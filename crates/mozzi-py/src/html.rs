@@ -1,7 +1,7 @@
 //! HTML representation of a model in a notebook: a table of its joints.
 
 use mozzi::Model;
-use mozzi_text::scalar;
+use mozzi_report::text::scalar;
 use std::fmt::Write;
 
 pub fn table(model: &Model) -> String {

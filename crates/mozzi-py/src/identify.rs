@@ -16,7 +16,7 @@ use pyo3::types::PyDict;
 fn of_identification(error: Error) -> PyErr {
     match error {
         Error::Model(error) => of_model(error),
-        other => PyValueError::new_err(other.to_string()),
+        other => PyValueError::new_err(other.to_string().replace("--trust-log fits", "trust_log=True fits")),
     }
 }
 

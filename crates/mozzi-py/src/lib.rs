@@ -3,6 +3,7 @@
 mod arguments;
 mod array;
 mod call;
+mod command_line;
 mod compare;
 mod conventions;
 mod describe;
@@ -42,6 +43,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(identify::_identify, module)?)?;
     module.add_function(wrap_pyfunction!(identify::_excite, module)?)?;
     module.add_function(wrap_pyfunction!(identify::_edited_files, module)?)?;
+    module.add_function(wrap_pyfunction!(command_line::_command_line, module)?)?;
     jax::add_to(module)?;
     motion::add_to(module)?;
     modern_robotics::add_to(module)?;

@@ -5,6 +5,7 @@ use crate::describe::{pose, refused};
 use crate::failure::{DynamicsWarning, LoadWarning, of_loader, of_model};
 use mozzi::model::Base;
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia};
+use mozzi_urdf::json;
 use mozzi_urdf::{Consequence, LoadError, Loaded, Policy, Settings, XacroArguments};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -66,6 +67,28 @@ impl Xacro<'_> {
         }
         Ok(arguments)
     }
+}
+
+/// An embedded robot by its name, a file of JSON of `mozzi convert`, or any [`file`].
+pub fn any(given: &Bound<'_, PyAny>, how: &str, floating: bool, xacro: &Xacro) -> PyResult<Model> {
+    let Ok(path) = given.extract::<PathBuf>() else { return file(given, how, floating, xacro) };
+    let py = given.py();
+    if let Some(name) = path.to_str().filter(|name| mozzi_urdf::embedded::unless_file(name).is_some()) {
+        return embedded(py, name, floating);
+    }
+    if path.extension().is_none_or(|ending| ending != "json") {
+        return file(given, how, floating, xacro);
+    }
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(&path)
+        .map_err(|source| of_loader(py, LoadError::File { path: path.clone(), source }))?;
+    let wrong = |error: json::Misplaced| PyValueError::new_err(error.to_string());
+    let robot = json::read(&json::File::parse(&name, &text).map_err(wrong)?);
+    let robot = robot.map_err(|errors| {
+        PyValueError::new_err(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+    })?;
+    let model = robot.build().map_err(of_model)?;
+    if floating { model.with_base(Base::Floating).map_err(of_model) } else { Ok(model) }
 }
 
 /// A path, or an object with `read`.

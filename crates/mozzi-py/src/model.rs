@@ -11,9 +11,9 @@ use crate::{html, load};
 use mozzi::FrameId;
 use mozzi::quantities::{Of, Query};
 use mozzi_engine::{Engine, Refusal};
-use mozzi_text::scalar;
+use mozzi_report::text::scalar;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PyString, PyTuple};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A robot: made from a file, a text, the book's lists, or by `mozzi.models`. It never changes, and may be shared by
@@ -88,6 +88,71 @@ pub fn array<'py>(
 
 #[pymethods]
 impl PyModel {
+    /// The robot of any file (URDF, xacro, MJCF, JSON of `mozzi convert`), or an embedded robot by its name.
+    ///
+    /// Parameters
+    /// ----------
+    /// name_or_path : str, path or file
+    ///     Name of an embedded robot, a path, or an object with `read`.
+    /// policy : str, optional
+    ///     'strict': warnings are errors; 'lenient': repair inertias and warn.
+    /// floating : bool, optional
+    ///     Free the base.
+    /// xacro_args, packages : dict, optional
+    ///     Values of a xacro file's arguments, and folders of ROS packages, by name.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> mozzi.Model.load("ur5").n
+    /// 6
+    #[staticmethod]
+    #[pyo3(signature = (name_or_path, *, policy="default", floating=false, xacro_args=None, packages=None))]
+    fn load(
+        name_or_path: &Bound<'_, PyAny>,
+        policy: &str,
+        floating: bool,
+        xacro_args: Option<Bound<'_, PyDict>>,
+        packages: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let xacro = load::Xacro { values: xacro_args, packages };
+        load::any(name_or_path, policy, floating, &xacro).map(Self::of)
+    }
+
+    /// A quantity by any of its names: `compute("M", theta)` is `mass_matrix(theta)`. The book's symbols (M, C, c, g,
+    /// h, J_b, J_s, Lambda, T), and Featherstone's and Pinocchio's names (rnea, crba, aba, nle, fk) are known.
+    ///
+    /// Parameters
+    /// ----------
+    /// quantity : str
+    ///     Name of the quantity.
+    /// *args, **kwargs
+    ///     Arguments of its method.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, float or a named tuple
+    ///     The result of the method.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> mozzi.models.ur5().compute("M", [0.0] * 6).shape
+    /// (6, 6)
+    #[pyo3(signature = (quantity, *args, **kwargs))]
+    fn compute<'py>(
+        slf: &Bound<'py, Self>,
+        quantity: &str,
+        args: &Bound<'py, PyTuple>,
+        kwargs: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.call_method(Query::named(quantity).map_err(of_model)?.name(), args, kwargs)
+    }
+
     /// The robot of a URDF, xacro or MJCF file: a path, or a file to read. `policy` 'strict' refuses what is odd,
     /// 'lenient' repairs inertias and says so; `floating` frees the base. A xacro file is expanded with `xacro_args`
     /// (the values of its arguments by name) and `packages` (the folders of `$(find name)`).

@@ -155,7 +155,11 @@ fn forward_kinematics<'py>(
 ) -> Found<'py> {
     let theta = per_joint("thetalist", thetalist)?;
     let (M, screws) = (pose(Numbers::matrix("M", M, "(4, 4)")?)?, columns("the screw axes", screws, theta.len())?);
-    let product = if in_body { mozzi::body_product_of_exponentials } else { mozzi::product_of_exponentials };
+    let product = if in_body {
+        mozzi::kinematics::body_product_of_exponentials
+    } else {
+        mozzi::kinematics::product_of_exponentials
+    };
     matrix(py, product(M, &screws, &theta).to_matrix())
 }
 
@@ -163,7 +167,8 @@ fn forward_kinematics<'py>(
 fn jacobian<'py>(py: Python<'py>, screws: Given<'_, 'py>, thetalist: Given<'_, 'py>, in_body: bool) -> Found<'py> {
     let theta = per_joint("thetalist", thetalist)?;
     let mut screws = columns("the screw axes", screws, theta.len())?;
-    let turn = if in_body { mozzi::body_jacobian_of_screws } else { mozzi::space_jacobian_of_screws };
+    let turn =
+        if in_body { mozzi::kinematics::body_jacobian_of_screws } else { mozzi::kinematics::space_jacobian_of_screws };
     turn(&mut screws, &theta);
     let (n, columns) = (screws.len(), screws.into_iter().map(Twist::to_array).collect::<Vec<_>>());
     array(py, &[6, n], (0..6).flat_map(|row| columns.iter().map(move |column| column[row])))

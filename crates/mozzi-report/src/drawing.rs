@@ -4,11 +4,11 @@ use crate::base64;
 use flate2::{Compression, write::GzEncoder};
 use mozzi::{Model, SE3};
 use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry_with, locate, parse};
-use mozzi_urdf::{LoadError, XacroArguments, visible};
+use mozzi_urdf::{LoadError, XacroArguments, files, visible};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 
 /// A larger file is left out.
 const MOST_BYTES: u64 = 64 << 20;
@@ -165,19 +165,10 @@ fn read(robot_file: &Path, address: &str, root: Option<&Path>) -> Result<(&'stat
     let path = locate(robot_file, address, root).map_err(|error| error.to_string())?;
     let place = visible(&format!("mesh {address}: {}", path.display()));
     let cannot = |error: std::io::Error| format!("{place} cannot be read: {error}");
-    let bytes = small(&path).map_err(cannot)?;
+    let bytes = files::read(&path, MOST_BYTES).map_err(cannot)?;
     check_mesh(format, &bytes).map_err(|why| format!("{place} is no mesh: {why}"))?;
     let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
     gzip.write_all(&bytes).and_then(|()| gzip.finish()).map(|gzip| (format, gzip)).map_err(cannot)
-}
-
-fn small(path: &PathBuf) -> std::io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let found = std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    match found as u64 > MOST_BYTES {
-        true => Err(std::io::Error::other(format!("it has more than {MOST_BYTES} bytes, expected at most these"))),
-        false => Ok(bytes),
-    }
 }
 
 /// The first three rows of a configuration's matrix.
@@ -240,7 +231,7 @@ mod tests {
         assert_eq!(drawing.meshes.len(), 1);
         assert!(drawing.meshes[0].gzip.starts_with(&[0x1f, 0x8b]));
         assert_eq!(drawing.notes[0], "mesh b.ply: is no .stl, .obj or .dae");
-        assert!(drawing.notes[1].starts_with("mesh c.obj was not found: neither "), "{:?}", drawing.notes);
+        assert!(drawing.notes[1].starts_with("mesh c.obj was not found: there is no file "), "{:?}", drawing.notes);
         assert_eq!((of(Meshes::Collision).shapes.len(), of(Meshes::None).shapes.len()), (2, 1));
         std::fs::remove_dir_all(&folder).expect("removed");
     }

@@ -2,11 +2,11 @@
 //! ([`pictures`]).
 //!
 //! ```
-//! use mozzi::simulation::{Options, Zero};
+//! use mozzi_sim::{Options, Zero};
 //! use mozzi_report::{Drawing, Meshes, Motion};
 //!
 //! let model = mozzi_urdf::open("ur5")?.build()?;
-//! let fall = model.simulate(&[0.0, -1.2, 1.5, 0.3, 1.1, 0.0], &[0.0; 6], Zero, &Options::new(0.2, 200))?;
+//! let fall = mozzi_sim::simulate(&model, &[0.0, -1.2, 1.5, 0.3, 1.1, 0.0], &[0.0; 6], Zero, &Options::new(0.2, 200))?;
 //! let drawing = Drawing::of_file("ur5", Meshes::Visual)?;
 //! let page = mozzi_report::html(&model, &drawing, Some(&Motion::simulated("let go", &fall)))?;
 //! assert!(page.starts_with("<!doctype html>") && page.contains("ur5, let go"));
@@ -20,8 +20,10 @@
 //! - `shapes`, each at a frame, and `meshes`: the files of meshes, gzipped;
 //! - `motion`: rows of a trajectory, as 32-bit floats (times: 64), and its contacts ([`Touches`]).
 //!
-//! [`play_html`] is the playground, which reads robots itself.
+//! [`play_html`] is the playground, which reads robots itself. [`compare`](mod@compare) explains why other libraries
+//! give other numbers; [`text`] has tables for terminals, [`whole_file`] writes files at once.
 mod base64;
+pub mod compare;
 mod drawing;
 mod error;
 pub mod figure;
@@ -33,7 +35,9 @@ pub mod pictures;
 mod play;
 #[cfg(test)]
 mod testing;
+pub mod text;
 mod touches;
+pub mod whole_file;
 
 pub use drawing::{Drawing, Meshes};
 pub use error::Error;

@@ -3,7 +3,8 @@
 use crate::base64::{self, singles};
 use crate::error::Error;
 use crate::touches::Touches;
-use mozzi::{Environment, Model, Trajectory, Wrench};
+use mozzi::{Environment, Model, Wrench};
+use mozzi_sim::Trajectory;
 use serde_json::{Value, json};
 
 /// The known data of a motion: a row for each time, row-major lists. Fields that are `None` are not shown.
@@ -51,10 +52,10 @@ impl Motion {
         }
     }
 
-    /// Every s-th row, and the last: at most `at_most` rows, but at least two. See [`mozzi::simulation::stride`].
+    /// Every s-th row, and the last: at most `at_most` rows, but at least two. See [`mozzi_sim::stride`].
     pub fn thinned(mut self, at_most: usize) -> Self {
         let rows = self.t.len();
-        let stride = mozzi::simulation::stride(rows, at_most);
+        let stride = mozzi_sim::stride(rows, at_most);
         if stride > 1 {
             let is_kept = |row: usize| row.is_multiple_of(stride) || row + 1 == rows;
             thin(&mut self.t, rows, is_kept);
@@ -179,12 +180,12 @@ pub(crate) fn thin<T>(table: &mut Vec<T>, rows: usize, is_kept: impl Fn(usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mozzi::simulation::{Options, Zero};
+    use mozzi_sim::{Options, Zero};
 
     #[test]
     fn energies_are_those_of_the_simulation() {
         let model = mozzi_urdf::open("double_pendulum").and_then(mozzi_urdf::Loaded::build).expect("embedded");
-        let fall = model.simulate(&[1.0, 0.3], &[0.0; 2], Zero, &Options::new(0.1, 20)).expect("a motion");
+        let fall = mozzi_sim::simulate(&model, &[1.0, 0.3], &[0.0; 2], Zero, &Options::new(0.1, 20)).expect("a motion");
         let whole = Motion::simulated("fall", &fall);
         let again = Motion { kinetic_energy: None, potential_energy: None, ..whole.clone() }.with_energies(&model);
         let again = again.expect("energies");
@@ -201,7 +202,10 @@ mod tests {
         let model = mozzi_urdf::open("double_pendulum").and_then(mozzi_urdf::Loaded::build).expect("embedded");
         let fall = |record_every| {
             let options = Options { record_every, ..Options::new(0.1, 20) };
-            Motion::simulated("fall", &model.simulate(&[1.0, 0.3], &[0.0; 2], Zero, &options).expect("a motion"))
+            Motion::simulated(
+                "fall",
+                &mozzi_sim::simulate(&model, &[1.0, 0.3], &[0.0; 2], Zero, &options).expect("a motion"),
+            )
         };
         let wrenches = |rows: usize| (0..rows).map(|k| Wrench::from_array([k as f64; 6])).collect();
         let whole = Motion { tip_wrench: Some(wrenches(21)), ..fall(1) };

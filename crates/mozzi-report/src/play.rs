@@ -3,6 +3,7 @@
 use crate::Drawing;
 use crate::page::filled;
 use mozzi::Model;
+use mozzi_urdf::geometry::FRICTION;
 use mozzi_urdf::{embedded, json};
 use serde_json::{Value, json};
 
@@ -43,6 +44,8 @@ pub struct Played<'a> {
     pub model: &'a Model,
     /// Its meshes.
     pub drawing: &'a Drawing,
+    /// Where it starts, other than the playground's own pose of an embedded robot or the file's start.
+    pub theta: Option<&'a [f64]>,
 }
 
 /// The playground with a first robot, the embedded ones, a xacro, an MJCF and two closed loops.
@@ -63,8 +66,11 @@ pub fn play_html(first: &Played) -> String {
         robots.insert(0, own);
         0
     });
+    if let Some(theta) = first.theta {
+        robots[place]["theta"] = json!(theta);
+    }
     let title = format!("{}: mozzi's playground", first.model.description().name);
-    filled(PAGE, WASM, &title, &json!({ "robots": robots, "first": place }))
+    filled(PAGE, WASM, &title, &json!({ "robots": robots, "first": place, "friction": FRICTION }))
 }
 
 fn entry(name: &str, file: &str, text: &str, is_embedded: bool) -> Value {
@@ -89,7 +95,14 @@ mod tests {
         assert!(page.contains("three.js") && page.contains("The MIT License"), "the notice of three.js");
         let model = mozzi_urdf::open("ur5").expect("embedded").build().expect("sound");
         let drawing = Drawing::default();
-        let page = play_html(&Played { name: "ur5", file: "ur5.urdf", text: "", model: &model, drawing: &drawing });
+        let page = play_html(&Played {
+            name: "ur5",
+            file: "ur5.urdf",
+            text: "",
+            model: &model,
+            drawing: &drawing,
+            theta: None,
+        });
         assert!(page.len() < 2_500_000, "{} bytes", page.len());
         assert!(page.contains("\"first\":5") && page.contains("<title>ur5: mozzi's playground</title>"));
     }
@@ -100,7 +113,24 @@ mod tests {
         let file = json::File::parse("four_bar.json", text).expect("JSON");
         let model = json::read(&file).expect("sound").build().expect("sound");
         let drawing = Drawing::default();
-        let page = play_html(&Played { name: "a/own.json", file: "own.json", text, model: &model, drawing: &drawing });
+        let page = play_html(&Played {
+            name: "a/own.json",
+            file: "own.json",
+            text,
+            model: &model,
+            drawing: &drawing,
+            theta: None,
+        });
         assert!(page.contains("\"first\":0") && page.contains("\"name\":\"own.json\""));
+    }
+
+    #[test]
+    fn a_robot_starts_where_it_is_told() {
+        let model = mozzi_urdf::open("double_pendulum").expect("embedded").build().expect("sound");
+        let drawing = Drawing::default();
+        let (name, file) = ("double_pendulum", "double_pendulum.urdf");
+        let theta = Some(&[0.125, -0.25][..]);
+        let page = play_html(&Played { name, file, text: "", model: &model, drawing: &drawing, theta });
+        assert!(page.contains("\"theta\":[0.125,-0.25]"));
     }
 }

@@ -4,8 +4,9 @@ use crate::base64::singles;
 use crate::drawing::rows;
 use crate::error::Error;
 use crate::motion::thin;
-use mozzi::simulation::{ContactEvent, Contacts, PlaneMotion};
-use mozzi::{FrameId, Model, SE3, Trajectory, Vec3};
+use mozzi::{FrameId, Model, SE3, Vec3};
+use mozzi_sim::Trajectory;
+use mozzi_sim::{ContactEvent, Contacts, PlaneMotion};
 use serde_json::{Value, json};
 
 /// The contacts of a simulated motion, by its rows.
@@ -58,14 +59,14 @@ impl Touches {
                 return Err(Error::Motion { what, found, expected, rows, width });
             }
         }
-        let of_row = |row: mozzi::simulation::Sample| contacts.frames(model, row.t, row.theta);
+        let of_row = |row: mozzi_sim::Sample| contacts.frames(model, row.t, row.theta);
         let points = motion.samples().flat_map(of_row).flat_map(|frame| frame.p.0).collect();
         let names = contacts.names().enumerate();
         let pair = |(k, name): (usize, String)| {
             let (point, plane) = (&contacts.points[k / contacts.planes.len()], k % contacts.planes.len());
             Pair { name, frame: point.frame, plane, mu: point.mu }
         };
-        let surface = |plane: &mozzi::simulation::Plane| {
+        let surface = |plane: &mozzi_sim::Plane| {
             let at = |T: &SE3| rows(*T);
             let (poses, velocity) = match &plane.motion {
                 PlaneMotion::Fixed(T) => (at(T), None),
@@ -115,7 +116,7 @@ impl Touches {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mozzi::simulation::{ContactPoint, Options, Plane, Simulation, Zero};
+    use mozzi_sim::{ContactPoint, Options, Plane, Simulation, Zero};
 
     fn fallen<'a>(model: &Model, planes: Vec<Plane<'a>>) -> (Contacts<'a>, Trajectory, Vec<ContactEvent>) {
         let point = |k: usize| {

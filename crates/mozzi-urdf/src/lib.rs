@@ -53,77 +53,44 @@
 //! );
 //! # Ok::<(), mozzi_urdf::LoadError>(())
 //! ```
-mod axis;
-mod bytes;
-mod consequence;
 pub mod constraints;
-mod context;
-mod diagnostic;
-mod dialect;
-mod drake;
 mod edit;
-mod element;
 pub mod embedded;
-mod error;
-mod expansion;
-mod explain;
-mod expressible;
-mod extension;
-mod finding;
-mod floating;
 pub mod geometry;
-mod joint;
 pub mod json;
-mod limit;
-mod link;
-mod mend;
 pub mod mjcf;
-mod number;
-mod origin;
-mod pages;
-mod places;
-#[cfg(feature = "pretty")]
-mod pretty;
-mod problem;
-mod repair;
-mod robot;
-mod scan;
-mod series;
+mod report;
 mod settings;
-mod source;
-mod spelling;
-mod syntax;
-mod version;
-mod visible;
-mod vocabulary;
-mod write;
-mod xacro;
+mod text;
+mod urdf;
 
-pub use consequence::{Consequence, consequence, unused};
-pub use diagnostic::Diagnostic;
 pub use edit::{EditError, EditedFile, drives_of_fixed_joints, edit, edit_files, edit_with_old_values};
-pub use error::LoadError;
-pub use expansion::expanded;
-pub use explain::{codes, explain, nearest_code, remedy};
-pub use expressible::expressible;
 pub use mozzi::model::Severity;
-pub use mozzi_xacro::Arguments as XacroArguments;
+pub use mozzi_xacro::{Arguments as XacroArguments, files};
+pub use report::consequence::{Consequence, consequence, unused};
+pub use report::diagnostic::Diagnostic;
+pub use report::error::LoadError;
+pub use report::explain::{codes, explain, nearest_code, remedy};
 #[cfg(feature = "pretty")]
-pub use pretty::Style;
+pub use report::pretty::Style;
+pub use report::spelling::did_you_mean;
+pub use report::visible::visible;
 pub use settings::{Policy, Settings};
-pub use spelling::did_you_mean;
-pub use visible::visible;
-pub use write::{NotUrdf, write};
+pub use text::expansion::expanded;
+pub use urdf::expressible::expressible;
+pub use urdf::write::{NotUrdf, write};
 
-use context::Context;
-use dialect::Dialect;
-use finding::{Findings, Placed};
 use mozzi::{Description, Model};
-use pages::Pages;
-use places::Places;
-use source::Source;
-use std::io::Read;
+use report::finding::{Findings, Placed};
+use report::places::Places;
+use report::{problem, repair};
 use std::path::Path;
+use text::context::Context;
+use text::dialect::Dialect;
+use text::pages::Pages;
+use text::source::Source;
+use text::{bytes, expansion, syntax};
+use urdf::robot;
 
 /// A robot that was read, with the warnings.
 #[derive(Clone, Debug)]
@@ -166,15 +133,9 @@ pub fn load_with(path: impl AsRef<Path>, settings: impl Into<Settings>) -> Resul
 }
 
 fn file_bytes(path: &Path) -> Result<Vec<u8>, LoadError> {
-    let mut bytes = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| {
-        // one byte more than the limit, so that a file which is too large is detected without reading all of it
-        file.take(bytes::MOST_BYTES as u64 + 1).read_to_end(&mut bytes)
-    });
-    match read {
-        Ok(_) => Ok(bytes),
-        Err(source) => Err(LoadError::File { path: path.to_path_buf(), source }),
-    }
+    // one byte more than the limit, so that a file which is too large is detected without reading all of it
+    files::read_start(path, bytes::MOST_BYTES as u64 + 1)
+        .map_err(|source| LoadError::File { path: path.to_path_buf(), source })
 }
 
 /// Reads a text. Diagnostics use the name as its file name.

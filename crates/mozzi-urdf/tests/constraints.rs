@@ -4,9 +4,10 @@
 use crate::common;
 
 use common::{repository, vector};
+use mozzi::constraints::constraint_jacobian;
 use mozzi::conventions::MuJoCo;
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind};
-use mozzi::{Description, Model, SE3, Vec3, Workspace, constraint_jacobian};
+use mozzi::{Description, Model, SE3, Vec3, Workspace};
 use mozzi_urdf::{Policy, constraints, load, parse, parse_with, write};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;

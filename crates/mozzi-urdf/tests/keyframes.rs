@@ -101,3 +101,18 @@ fn states_are_read_whatever_the_inertias_need() {
     let robot = parse_with("a.xml", text, Policy::Lenient).unwrap();
     assert_eq!(robot.build().unwrap().state_names().collect::<Vec<_>>(), ["qpos0", "k"]);
 }
+
+#[test]
+fn a_quaternion_of_length_0_is_that_of_no_rotation() {
+    let qpos = "0 0 0 0  0.5  -2.1415926535897932  1 2 3 0 0 0 0";
+    let (model, said) = model("angle='degree'", &format!("<key name='still' qpos='{qpos}'/>"));
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said.iter().all(|line| line.ends_with("has the length 0, and is (1, 0, 0, 0) here")), "{said:?}");
+    let State { theta, .. } = model.state("still").unwrap();
+    assert_eq!((theta[0], theta[5]), (1.0, 1.0));
+    let wrong = format!(
+        "<mujoco>{}</mujoco>",
+        "<worldbody><body><freejoint/><geom size='1'/></body></worldbody><keyframe><key qpos='0 0 0 1e200 1e200 0 0'/></keyframe>"
+    );
+    assert!(mozzi_urdf::parse("a.xml", wrong).unwrap_err().to_string().contains("has the length inf"));
+}

@@ -1,6 +1,7 @@
 //! The tests in one program: each links the crate and all that it needs.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod actuators;
 mod common;
 mod constraints;
 mod damaged;
@@ -19,4 +20,5 @@ mod refused;
 mod reports;
 mod robots;
 mod round_trip;
+mod transmissions;
 mod xacro;

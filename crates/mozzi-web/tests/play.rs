@@ -2,8 +2,8 @@
 #![cfg(feature = "play")]
 
 use mozzi::quantities::{INPUTS, Query};
-use mozzi::simulation::{Contacts, GravityCompensation, Method, Options, Plane, Simulation, Zero};
 use mozzi::{Model, SE3};
+use mozzi_sim::{Contacts, GravityCompensation, Method, Options, Plane, Simulation, Zero};
 use mozzi_web::{Robot, Session};
 use serde_json::{Value, json};
 
@@ -137,7 +137,7 @@ fn steps_are_the_simulations() {
         play(robot, json!({ "do": "set", "motors": motors, "omega": 5, "zeta": 1, "reset": true }));
         let answer = play(robot, json!({ "do": "step", "step": 0.001, "steps": 50 }));
         let model = robot.model().clone();
-        let joint_limits = mozzi::simulation::Policy::Respect;
+        let joint_limits = mozzi_sim::Policy::Respect;
         let options = Options { method: Method::RungeKutta4, joint_limits, ..Options::new(0.05, 50) };
         let run = match motors {
             "off" => Simulation::new(options).run(&model, &theta, &dtheta, Zero),
@@ -259,13 +259,12 @@ fn bend(name: &str) -> f64 {
 }
 
 /// The origins of the last links.
-fn feet(model: &Model) -> Vec<mozzi::simulation::ContactPoint> {
+fn feet(model: &Model) -> Vec<mozzi_sim::ContactPoint> {
     let robot = model.description();
     let is_end = |name: &str| !robot.joints.iter().any(|joint| joint.parent == name);
     let ends = robot.links.iter().filter(|link| is_end(&link.name));
-    let point = |name: &str| {
-        mozzi::simulation::ContactPoint::new(name, model.frame(name).expect("a link"), mozzi::Vec3::zero(), 0.7)
-    };
+    let point =
+        |name: &str| mozzi_sim::ContactPoint::new(name, model.frame(name).expect("a link"), mozzi::Vec3::zero(), 0.7);
     ends.map(|link| point(&link.name)).collect()
 }
 

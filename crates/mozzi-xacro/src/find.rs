@@ -2,10 +2,11 @@
 
 use crate::expander::Expander;
 use crate::fault::{Fault, Result};
+use crate::files;
 use std::path::{Path, PathBuf};
 
 /// The number of bytes of a package.xml that are read for its name.
-const MOST_MANIFEST: usize = 64 << 10;
+const MOST_MANIFEST: u64 = 1 << 20;
 /// The number of entries of a folder that are checked.
 const MOST_ENTRIES: usize = 4096;
 
@@ -83,8 +84,8 @@ fn in_folder(folder: &Path, name: &str) -> Option<PathBuf> {
 
 /// True if the folder's package.xml has this name.
 fn has_name(folder: &Path, name: &str) -> bool {
-    let Ok(text) = std::fs::read_to_string(folder.join("package.xml")) else { return false };
-    let text = &text[..text.floor_char_boundary(MOST_MANIFEST)];
+    let Ok(bytes) = files::read(&folder.join("package.xml"), MOST_MANIFEST) else { return false };
+    let text = String::from_utf8_lossy(&bytes);
     let given = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
     given.is_some_and(|(given, _)| given.trim() == name)
 }

@@ -6,10 +6,10 @@ use crate::document::Id;
 use crate::expander::{Expander, File};
 use crate::expression::{Value, text_of};
 use crate::fault::{Fault, Result};
+use crate::files;
 use crate::glob::{self, is_pattern};
 use crate::parse::parse;
 use crate::scope::{Definition, Macros, Property, Scope};
-use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 
@@ -136,16 +136,7 @@ pub(crate) fn without_parents(path: &Path) -> PathBuf {
 pub(crate) fn read_text(path: &Path) -> Result<String> {
     let fails =
         |why: &dyn std::fmt::Display| Fault::missing_file(format!("`{}` cannot be read: {why}", path.display()));
-    let data = std::fs::metadata(path).map_err(|why| fails(&why))?;
-    if !data.is_file() {
-        return Err(fails(&"it is not a file"));
-    }
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(|why| fails(&why))?;
-    file.take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(|why| fails(&why))?;
-    if bytes.len() > MOST_BYTES {
-        return Err(Fault::new(format!("`{}` has more than {MOST_BYTES} bytes", path.display())));
-    }
+    let bytes = files::read(path, MOST_BYTES as u64).map_err(|why| fails(&why))?;
     let text = String::from_utf8(bytes).map_err(|why| {
         Fault::new(format!("byte {} of `{}` is not UTF-8", why.utf8_error().valid_up_to(), path.display()))
     })?;

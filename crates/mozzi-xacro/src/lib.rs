@@ -27,6 +27,7 @@ mod elements;
 mod expander;
 mod expression;
 mod fault;
+pub mod files;
 mod find;
 mod glob;
 mod include;

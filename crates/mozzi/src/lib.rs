@@ -24,10 +24,9 @@
 //!   functions of [`dynamics`] and [`kinematics`], kernels on slices, generic over the number type, without allocation;
 //!   or [`fast`], the kernels on `f64` with the machine's instruction set, for control loops.
 //! - The book's intermediate results: [`Model::screws`], [`Model::closed_form`], [`Model::newton_euler`].
-//! - Simulation: [`simulation`].
+//! - Simulation: the crate `mozzi-sim`.
 //! - Derivatives: along any direction, [`Model::directional_derivative`]; with respect to a robot's parameters,
-//!   [`Model::with_parameter_tangent`]; the regressor, [`Model::regressor`]; of a simulation step,
-//!   [`Model::step_sensitivity`].
+//!   [`Model::with_parameter_tangent`]; the regressor, [`Model::regressor`].
 //! - Conversions to and from Pinocchio and MuJoCo: [`conventions`].
 //!
 //! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. Applied wrenches are those of the robot on
@@ -46,13 +45,12 @@ pub mod kinematics;
 pub mod lie;
 pub mod linalg;
 pub mod model;
-pub mod one_sided;
 pub mod quantities;
-mod quantity;
 pub mod random;
 pub mod scalar;
-pub mod simulation;
 pub mod spatial;
+pub mod spelling;
+#[cfg(any(test, feature = "testing"))]
 pub mod testing;
 mod workspace;
 
@@ -61,18 +59,16 @@ pub use api::{
     ForwardDynamicsDerivatives, ForwardDynamicsVjp, InverseDynamicsDerivatives, InverseDynamicsVjp, NewtonEuler,
     ParameterVjp, Reduction, TaskSpaceDynamics,
 };
-pub use constraints::*;
-pub use dynamics::*;
-pub use kinematics::*;
+pub use dynamics::{BaseParameters, ClosedForm, Entry};
+pub use kinematics::Jacobian;
 pub use lie::{SE3, SO3};
 pub use linalg::{Mat3, Sym3, Vec3};
 pub use model::{
-    Base, Description, Environment, Error, Frame, FrameId, Freedom, HomeFrames, Model, Pivots, Place, Screws, Task,
-    TaskFrame, TaskMemory, least_is_clear,
+    Base, ConfigurationSpace, Description, Environment, Error, Frame, FrameId, Freedom, HomeFrames, Model, Pivots,
+    Place, Screws, Task, TaskFrame, TaskMemory, least_is_clear,
 };
 pub use nalgebra;
 pub use scalar::{Dual, Real, Scalar};
-pub use simulation::Trajectory;
 pub use spatial::solids::Solid;
 pub use spatial::{ScrewAxis, SpatialInertia, Twist, Wrench};
-pub use workspace::Workspace;
+pub use workspace::{ConstraintMemory, Workspace};

@@ -165,7 +165,7 @@ pub fn floating_mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
     mixed_tree(seed, links, mimics).with_base(Base::Floating).expect("a sound robot")
 }
 
-pub use crate::kinematics::seed_direction as moving;
+pub use crate::model::seed_direction as moving;
 
 /// A random state (θ, θ̇, θ̈) of a model.
 pub fn state(model: &Model, seed: u64) -> [alloc::vec::Vec<f64>; 3] {

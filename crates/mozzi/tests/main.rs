@@ -1,7 +1,6 @@
 //! The tests in one program: each links the crate and all that it needs.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-mod allocation;
+mod long_chain;
 mod modern_robotics;
-mod one_sided;
 mod sin_cos;

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 /// The libraries whose documentation the book contains.
 const DOCUMENTED: [&str; 7] =
-    ["mozzi", "mozzi-urdf", "mozzi-motion", "mozzi-engine", "mozzi-identify", "mozzi-compare", "mozzi-report"];
+    ["mozzi", "mozzi-sim", "mozzi-urdf", "mozzi-motion", "mozzi-engine", "mozzi-identify", "mozzi-report"];
 
 /// Where the book is written.
 const FOLDER: &str = "target/book";

@@ -1,13 +1,13 @@
-//! The public items of each public crate, a line each, in docs/api: a change of the interface shows in a review.
+//! The public items of each public crate, a line each, and how the interface differs from the last published version.
 
 use super::crates::PUBLIC;
 use crate::command;
 use crate::report::Outcome;
 use crate::workspace::Workspace;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
-const FOLDER: &str = "docs/api";
+const FOLDER: &str = "target/api/items";
 
 /// Libraries whose items are listed: the command line's interface is docs/command-line.md.
 fn libraries() -> impl Iterator<Item = &'static str> {
@@ -18,35 +18,20 @@ fn file(name: &str) -> String {
     format!("{}.txt", name.replace('-', "_"))
 }
 
-/// Rewrites the lists.
+/// Writes the lists.
 pub fn write(workspace: &Workspace) -> Outcome {
     match list(workspace, &workspace.path(FOLDER)) {
-        Ok(lines) => Outcome::Passed(format!("{lines} public items in {FOLDER}")),
+        Ok(counts) => {
+            let all: usize = counts.iter().map(|(_, lines)| lines).sum();
+            let each = counts.iter().map(|(name, lines)| format!("{name} {lines}")).collect::<Vec<_>>().join(", ");
+            Outcome::Passed(format!("{all} public items in {FOLDER}: {each}"))
+        }
         Err(why) => Outcome::Failed(why),
     }
 }
 
-/// Checks that the committed lists are current.
-pub fn check(workspace: &Workspace) -> Outcome {
-    let listed = workspace.scratch("api").and_then(|folder| list(workspace, &folder).map(|lines| (folder, lines)));
-    let (folder, lines) = match listed {
-        Ok(listed) => listed,
-        Err(why) => return Outcome::Failed(why),
-    };
-    let read = |path: PathBuf| std::fs::read_to_string(path).unwrap_or_default();
-    let outdated: Vec<String> = libraries()
-        .map(file)
-        .filter(|name| read(folder.join(name)) != read(workspace.path(FOLDER).join(name)))
-        .map(|name| format!("{FOLDER}/{name}"))
-        .collect();
-    match outdated.is_empty() {
-        true => Outcome::Passed(format!("{lines} public items")),
-        false => Outcome::Failed(format!("outdated: {}; run `cargo xtask api`", outdated.join(", "))),
-    }
-}
-
 /// Lists all items by rustdoc's JSON, which compilers of this version write only if they are told to be unstable.
-fn list(workspace: &Workspace, folder: &Path) -> Result<usize, String> {
+fn list(workspace: &Workspace, folder: &Path) -> Result<Vec<(&'static str, usize)>, String> {
     let target = workspace.path("target/api");
     let mut files = Vec::new();
     for name in libraries() {
@@ -60,8 +45,11 @@ fn list(workspace: &Workspace, folder: &Path) -> Result<usize, String> {
     let mut cargo = workspace.cargo(&["run", "--quiet", "--locked", "--manifest-path"]);
     cargo.arg(workspace.path("xtask/api_list/Cargo.toml")).arg("--target-dir").arg(&target);
     command::run(cargo.arg("--").args(files).arg(folder))?;
-    let lines = |name: &str| std::fs::read_to_string(folder.join(file(name))).map(|text| text.lines().count());
-    libraries().map(lines).sum::<Result<_, _>>().map_err(|error| format!("{}: {error}", folder.display()))
+    let lines = |name| Ok((name, std::fs::read_to_string(folder.join(file(name)))?.lines().count()));
+    libraries()
+        .map(lines)
+        .collect::<Result<_, _>>()
+        .map_err(|error: std::io::Error| format!("{}: {error}", folder.display()))
 }
 
 /// Compares with the last published version by `cargo semver-checks`.

@@ -6,11 +6,20 @@ use crate::workspace::Workspace;
 use serde_json::Value;
 
 /// Those with a documented interface, in an order in which each depends on earlier ones.
-pub const PUBLIC: [&str; 8] =
-    ["mozzi", "mozzi-xacro", "mozzi-urdf", "mozzi-engine", "mozzi-gpu", "mozzi-motion", "mozzi-identify", "mozzi-cli"];
+pub const PUBLIC: [&str; 9] = [
+    "mozzi",
+    "mozzi-sim",
+    "mozzi-xacro",
+    "mozzi-urdf",
+    "mozzi-engine",
+    "mozzi-gpu",
+    "mozzi-motion",
+    "mozzi-identify",
+    "mozzi-cli",
+];
 
 /// Parts of the command line: on crates.io because mozzi-cli needs them there, without a promise of stability.
-pub const PARTS: [&str; 3] = ["mozzi-text", "mozzi-report", "mozzi-compare"];
+pub const PARTS: [&str; 1] = ["mozzi-report"];
 
 /// Everything that is published.
 pub fn all() -> impl Iterator<Item = &'static str> {

@@ -1,8 +1,9 @@
 //! Robots and states with every quantity by the library itself: what the programs read and compare with.
 
+use mozzi::model::integrate;
 use mozzi::quantities::{LIST, Of, Query};
 use mozzi::random::Random;
-use mozzi::{Environment, Model, TaskFrame, Twist, Vec3, Wrench, integrate};
+use mozzi::{Environment, Model, TaskFrame, Twist, Vec3, Wrench};
 use std::fmt::Write;
 
 /// The tips of a Panda's fingers at one place: a closed loop.

@@ -2,9 +2,9 @@
 
 use crate::failure::{Failure, Result};
 use crate::robot::{RobotArguments, Units};
-use crate::state::StartArguments;
+use crate::state::{StartArguments, pasted};
 use crate::text::{Page, about, column, rows_of, table};
-use crate::{failure, json};
+use crate::{angles, failure, json};
 use clap::Args;
 use mozzi::quantities::ConstraintResidual;
 use mozzi::{ConstraintRank, Model};
@@ -25,7 +25,7 @@ pub struct AssembleArguments {
 }
 
 pub fn run(arguments: &AssembleArguments) -> Result<String> {
-    let model = arguments.robot.load()?;
+    let model = arguments.robot.load_at(|model| Ok(arguments.start.read(model)?.0))?;
     needs_constraints(&model)?;
     let (guess, rates) = arguments.start.read(&model)?;
     let hold: Vec<&str> = arguments.hold.iter().map(String::as_str).collect();
@@ -44,18 +44,23 @@ pub fn run(arguments: &AssembleArguments) -> Result<String> {
         )));
     }
     let (units, mut page) = (Units::of(&model), Page::default());
+    let are_angles = angles::of_positions(&model);
     page.line(summary(&rank)).line(format!("largest violation: {} rad or m", about(residual))).blank();
     let mut columns = vec![
         [vec!["θ".to_string()], model.position_names().map(str::to_string).collect()].concat(),
-        [vec![units.input(0)], column(&theta)].concat(),
-        [vec!["guess".to_string()], column(&guess)].concat(),
+        [vec![units.input(0)], column(&angles::shown(&theta, &are_angles))].concat(),
+        [vec!["guess".to_string()], column(&angles::shown(&guess, &are_angles))].concat(),
     ];
     if model.nq() == model.n() {
-        columns.push([vec![format!("θ̇ [{}]", units.input(1))], column(&dtheta)].concat());
+        columns.push(
+            [vec![format!("θ̇ [{}]", units.input(1))], column(&angles::shown(&dtheta, &angles::of_velocities(&model)))]
+                .concat(),
+        );
     }
     page.lines(&table(&rows_of(columns), "lrrr"));
-    let list = |values: &[f64]| values.iter().map(|x| format!("{x}")).collect::<Vec<_>>().join(",");
-    page.blank().line(format!("--theta {} --dtheta {}", list(&theta), list(&dtheta)));
+    page.blank();
+    let [shown, rates] = [angles::shown(&theta, &are_angles), angles::shown(&dtheta, &angles::of_velocities(&model))];
+    pasted(&mut page, &[("--theta", &shown), ("--dtheta", &rates)]);
     Ok(page.end())
 }
 

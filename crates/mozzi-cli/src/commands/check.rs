@@ -12,8 +12,9 @@ use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
 pub struct CheckArguments {
-    /// A robot's file (URDF, xacro, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
-    model: String,
+    /// Robots' files (URDF, xacro, MJCF, or JSON of `mozzi convert`), or the names of embedded robots
+    #[arg(value_name = "MODEL", required = true)]
+    models: Vec<String>,
     /// Text with excerpts on standard error, or on standard output one JSON object per diagnostic and line,
     /// or one log in SARIF 2.1.0
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -38,49 +39,76 @@ impl CheckArguments {
     }
 }
 
+/// Checks each file; the command fails if one of them is refused.
 pub fn run(arguments: &CheckArguments) -> Result<String> {
-    let name = arguments.model.as_str();
-    if robot_json::is_json(name) {
-        return json_robot(arguments);
-    }
-    let answer = arguments.policy.open(name);
     let format = arguments.format();
-    if format != Format::Text {
-        return match answer {
-            Ok(loaded) => Ok(print(format, &objects(loaded.warnings.iter().chain(&loaded.unused)))),
-            Err(error) if error.diagnostics().is_empty() => {
-                Err(Failure::Answered(print(format, &[placeless(name, "error", None, &error.to_string())])))
-            }
-            Err(error) => Err(Failure::Answered(print(format, &objects(error.diagnostics())))),
-        };
+    if let (Format::Text, [name]) = (format, &arguments.models[..]) {
+        return as_text(arguments, name);
     }
-    let loaded = answer?;
+    let (mut all, mut refused) = (Vec::new(), 0);
+    for name in &arguments.models {
+        let is_refused = match format {
+            Format::Text => as_text(arguments, name).map_err(|failure| failure.say()).is_err(),
+            Format::Json | Format::Sarif => {
+                let (found, is_refused) = as_objects(arguments, name)?;
+                all.extend(found);
+                is_refused
+            }
+        };
+        refused += usize::from(is_refused);
+    }
+    let text = match format {
+        Format::Text => String::new(),
+        Format::Json | Format::Sarif => print(format, &all),
+    };
+    if format == Format::Text {
+        let count = arguments.models.len();
+        failure::write(&format!("{} of {count} robots are valid\n", count - refused));
+    }
+    if refused == 0 { Ok(text) } else { Err(Failure::Answered(text)) }
+}
+
+/// Prints the findings of one file.
+fn as_text(arguments: &CheckArguments, name: &str) -> Result<String> {
+    if robot_json::is_json(name) {
+        return json_robot(arguments, name);
+    }
+    let loaded = arguments.policy.open(name)?;
     loaded.warnings.iter().for_each(failure::say);
     mozzi_urdf::unused(&loaded.unused).iter().for_each(|count| failure::note(count));
     let count = loaded.warnings.len();
     sound(input::name(name), count, &arguments.policy.constrained(name, loaded.description)?.build()?)
 }
 
-/// A robot from JSON: the same checks, each problem by its element, as there is no source text.
-fn json_robot(arguments: &CheckArguments) -> Result<String> {
-    let name = input::name(&arguments.model);
-    let (format, is_object) = (arguments.format(), arguments.format() != Format::Text);
-    let robot = match robot_json::read(&arguments.model) {
-        Err(errors) if is_object => {
-            let errors: Vec<Value> = errors.iter().map(|error| misplaced(name, error)).collect();
-            return Err(Failure::Answered(print(format, &errors)));
-        }
-        other => arguments.policy.constrained(&arguments.model, arguments.policy.freed(other?))?,
-    };
-    let (errors, warnings) = arguments.policy.problems(&robot);
-    let all = || errors.iter().map(|e| ("error", e)).chain(warnings.iter().map(|w| ("warning", w)));
-    if is_object {
-        let found: Vec<Value> =
-            all().map(|(severity, p)| placeless(name, severity, Some(p.code), &p.to_string())).collect();
-        let text = print(format, &found);
-        return if errors.is_empty() { Ok(text) } else { Err(Failure::Answered(text)) };
+/// The findings of one file, and whether it is refused.
+fn as_objects(arguments: &CheckArguments, name: &str) -> Result<(Vec<Value>, bool)> {
+    if robot_json::is_json(name) {
+        let place = input::name(name);
+        let robot = match robot_json::read(name) {
+            Err(errors) => return Ok((errors.iter().map(|error| misplaced(place, error)).collect(), true)),
+            Ok(robot) => arguments.policy.constrained(name, arguments.policy.freed(robot))?,
+        };
+        let (errors, warnings) = arguments.policy.problems(&robot);
+        let all = errors.iter().map(|e| ("error", e)).chain(warnings.iter().map(|w| ("warning", w)));
+        let found = all.map(|(severity, p)| placeless(place, severity, Some(p.code), &p.to_string())).collect();
+        return Ok((found, !errors.is_empty()));
     }
-    all().for_each(|(severity, problem)| failure::write(&format!("{name}: {severity}: {problem}\n")));
+    Ok(match arguments.policy.open(name) {
+        Ok(loaded) => (objects(loaded.warnings.iter().chain(&loaded.unused)), false),
+        Err(error) if error.diagnostics().is_empty() => {
+            (vec![placeless(name, "error", None, &error.to_string())], true)
+        }
+        Err(error) => (objects(error.diagnostics()), true),
+    })
+}
+
+/// A robot from JSON: the same checks, each problem by its element, as there is no source text.
+fn json_robot(arguments: &CheckArguments, name_or_path: &str) -> Result<String> {
+    let name = input::name(name_or_path);
+    let robot = arguments.policy.constrained(name_or_path, arguments.policy.freed(robot_json::read(name_or_path)?))?;
+    let (errors, warnings) = arguments.policy.problems(&robot);
+    let all = errors.iter().map(|e| ("error", e)).chain(warnings.iter().map(|w| ("warning", w)));
+    all.for_each(|(severity, problem)| failure::write(&format!("{name}: {severity}: {problem}\n")));
     match errors.len() {
         0 => sound(name, warnings.len(), &robot.build()?),
         1 => Err(Failure::wrong(format!("{name} is refused: 1 error"))),

@@ -8,7 +8,7 @@ use crate::robot::PolicyArguments;
 use crate::{input, robot_json};
 use clap::Args;
 use mozzi::Description;
-use mozzi_compare::{Options, Source, ask, compare, find_python};
+use mozzi_report::compare::{Options, Source, ask, compare, find_python};
 use mozzi_urdf::expanded;
 use std::path::Path;
 use std::time::Duration;
@@ -96,9 +96,9 @@ fn source(arguments: &CompareArguments, robot: &Description) -> Result<Source> {
     Ok(Source::of_text(input::name(name), &expansion.unwrap_or_else(|| String::from_utf8_lossy(text).into_owned())))
 }
 
-impl From<mozzi_compare::Error> for Failure {
-    fn from(error: mozzi_compare::Error) -> Self {
-        let hint = if matches!(error, mozzi_compare::Error::Python { .. }) { " with --python" } else { "" };
+impl From<mozzi_report::compare::Error> for Failure {
+    fn from(error: mozzi_report::compare::Error) -> Self {
+        let hint = if matches!(error, mozzi_report::compare::Error::Python { .. }) { " with --python" } else { "" };
         Failure::Wrong(format!("{error}{hint}"))
     }
 }

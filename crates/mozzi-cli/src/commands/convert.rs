@@ -1,15 +1,15 @@
 //! `mozzi convert`: the same robot in another file, or an edited one.
 
-pub mod edits;
 pub mod urdf;
 
 use super::screws;
-use crate::columns::save;
+use crate::edits::EditArguments;
 use crate::failure::{self, Failure, Result};
+use crate::output::Output;
 use crate::robot::PolicyArguments;
 use crate::robot_json;
 use clap::Args;
-use edits::EditArguments;
+use std::io::Write;
 use std::path::Path;
 use urdf::LeftOut;
 
@@ -41,16 +41,14 @@ pub fn run(arguments: &ConvertArguments) -> Result<String> {
     if !["urdf", "json", "py"].contains(&suffix) {
         return Err(Failure::wrong(format!("OUT is `{output}`, expected a name that ends in .urdf, .json or .py")));
     }
-    if !arguments.in_place && is_same_file(input, output) {
-        return Err(Failure::wrong(format!("OUT is the file IN, `{input}`; --in-place overwrites it")));
-    }
     let model = arguments.edits.apply(arguments.policy.model(input)?)?;
     let text = match suffix {
         "urdf" => urdf::text(input, output, model.description(), &arguments.leave_out, arguments.policy.settings())?,
         "json" => robot_json::write(&model),
         _ => screws::python(&model)?,
     };
-    save(output, &text)?;
+    let to = if arguments.in_place { Output::replacing(output)? } else { Output::create(output)? };
+    to.write(|to| to.write_all(text.as_bytes()))?;
     let states: Vec<&str> = model.state_names().collect();
     if suffix != "json" && !states.is_empty() {
         failure::note(&format!(
@@ -59,24 +57,4 @@ pub fn run(arguments: &ConvertArguments) -> Result<String> {
         ));
     }
     Ok(format!("{output}: {}\n", super::info::headline(&model)))
-}
-
-/// Also by a link or another spelling of the path. An embedded robot is no file.
-fn is_same_file(input: &str, output: &str) -> bool {
-    match (std::fs::canonicalize(input), std::fs::canonicalize(output)) {
-        (Ok(a), Ok(b)) => a == b || is_same_inode(&a, &b),
-        _ => false,
-    }
-}
-
-#[cfg(unix)]
-fn is_same_inode(a: &Path, b: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let file = |path: &Path| std::fs::metadata(path).map(|data| (data.dev(), data.ino())).ok();
-    file(a).is_some() && file(a) == file(b)
-}
-
-#[cfg(not(unix))]
-fn is_same_inode(_: &Path, _: &Path) -> bool {
-    false
 }

@@ -1,10 +1,10 @@
 //! `mozzi excite`: a motion that determines a robot's parameters.
 
 use crate::columns::{Columns, save};
-use crate::commands::convert::edits;
+use crate::edits;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{array, number, numbers};
-use crate::robot::RobotArguments;
+use crate::robot::FileArguments;
 use crate::tables::format::Format;
 use crate::text::{Page, table};
 use crate::{interrupt, json};
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 #[derive(Args, Debug)]
 pub struct ExciteArguments {
     #[command(flatten)]
-    robot: RobotArguments,
+    robot: FileArguments,
     /// Duration, s
     #[arg(long, value_name = "SECONDS", default_value = "20", allow_hyphen_values = true)]
     duration: String,
@@ -87,9 +87,17 @@ enum Place {
 pub fn run(arguments: &ExciteArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let whole = arguments.robot.load()?;
-    let locks = edits::locks(&arguments.lock)?;
+    let locks = edits::locks(&arguments.lock, &whole)?;
     let model = if locks.is_empty() { whole } else { whole.with_locked_joints(&locks)? };
     let options = arguments.options(&model)?;
+    for (name, [low, high]) in model.joint_names().zip(&options.limits.position) {
+        if low >= high {
+            failure::note(&format!(
+                "joint `{name}` has a range of 0 and does not move, so that its parameters are not determined; --range \
+                 {name}=LOW,HIGH gives it another"
+            ));
+        }
+    }
     let step = number("--step", &arguments.step)?;
     if !(step > 0.0 && options.duration / step < 1e7) {
         return Err(Failure::wrong(format!(
@@ -146,8 +154,8 @@ impl ExciteArguments {
         }
         for text in &self.within {
             let (name, corners) = edits::split("--within", text, "FRAME=x,y,z,X,Y,Z")?;
-            let [x, y, z, X, Y, Z] = array(&format!("--within {name}"), corners, ["x", "y", "z", "X", "Y", "Z"])?;
-            options.limits.boxes.push(Box3 { frame: model.frame(name)?, corners: [[x, y, z], [X, Y, Z]] });
+            let corners = edits::corners(&format!("--within {name}"), corners)?;
+            options.limits.boxes.push(Box3 { frame: model.frame(name)?, corners });
         }
         for text in &self.apart {
             const EXPECTED: &str = "FRAME,FRAME=r,R";

@@ -1,12 +1,13 @@
 //! `mozzi ik`: joint positions that place the end effector at a desired pose.
 
+use crate::angles;
 use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units, space_frame};
-use crate::state::positions;
+use crate::state::{pasted, positions};
 use crate::tables::format::Format;
 use crate::text::{Page, about, column, table};
 use crate::{goals, interrupt, json};
@@ -82,14 +83,31 @@ pub fn run(arguments: &IkArguments) -> Result<String> {
     match &arguments.input {
         Some(file) => arguments.table(&model, &mut solver, file, &guess, &secondary),
         None => {
-            let found = solver.solve_with(
-                arguments.goal.read()?.ok_or_else(|| Failure::wrong(NO_GOAL))?,
-                &guess,
-                &secondary,
-            )?;
+            let goal = arguments.goal.read()?.ok_or_else(|| Failure::wrong(NO_GOAL))?;
+            let found =
+                solver.solve_with(goal, &guess, &secondary).map_err(|error| not_reached(&solver, goal, error))?;
             if arguments.robot.json { Ok(json::print(&object(&model, &found)?)) } else { page(&model, &found) }
         }
     }
+}
+
+/// The error, beginning with its reason if the robot's shape is one.
+fn not_reached(solver: &InverseKinematics, goal: Goal, error: mozzi_motion::Error) -> Failure {
+    let mozzi_motion::Error::NotReached { frame, theta, residual, limits, starts, .. } = &error else {
+        return error.into();
+    };
+    let Some(reason) = solver.why_not(goal, theta) else { return error.into() };
+    let limits = match limits.len() {
+        0 => String::new(),
+        _ => format!(
+            ", with {} at a limit",
+            limits.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+        ),
+    };
+    Failure::wrong(format!(
+        "{reason}; the best of {starts} starts leaves `{frame}` {residual} away{limits}, at θ = {}",
+        crate::table::short(theta)
+    ))
 }
 
 impl IkArguments {
@@ -207,11 +225,12 @@ fn page(model: &Model, found: &Solution) -> Result<String> {
         found.iterations
     ));
     let names = model.position_names().map(str::to_string);
-    let rows: Vec<Vec<String>> = names.zip(column(&found.theta)).map(|(name, value)| vec![name, value]).collect();
+    let theta = angles::shown(&found.theta, &angles::of_positions(model));
+    let rows: Vec<Vec<String>> = names.zip(column(&theta)).map(|(name, value)| vec![name, value]).collect();
     page.blank().line(format!("θ in {}", Units::of(model).input(0))).lines(&table(&rows, "lr"));
     let T = model.forward_kinematics(&found.theta, frame)?.to_matrix();
     page.blank().line(format!("T, its pose in {}", space_frame(model))).lines(&crate::text::constants(T));
-    let list: Vec<String> = found.theta.iter().map(|x| format!("{x:?}")).collect();
-    page.blank().line(format!("--theta {}", list.join(",")));
+    page.blank();
+    pasted(&mut page, &[("--theta", &theta)]);
     Ok(page.end())
 }

@@ -1,9 +1,9 @@
 //! The outcome of `mozzi simulate`.
 
-use mozzi::Trajectory;
-use mozzi::simulation::{Account, Closing, ContactEvent, Method, Occurrence, OneSidedAccount, Stopped};
 use mozzi_motion::controllers::{Overload, TrackingError};
 use mozzi_report::Touches;
+use mozzi_sim::Trajectory;
+use mozzi_sim::{Account, Closing, ContactEvent, Method, Occurrence, OneSidedAccount, Stopped};
 
 /// A motion and its notes.
 pub struct Outcome {

@@ -7,6 +7,7 @@ use crate::json::print;
 use crate::report::MeshArguments;
 use crate::robot::RobotArguments;
 use crate::serve;
+use crate::state::StartArguments;
 use clap::{Arg, Args};
 use mozzi::Model;
 use mozzi_report::{Played, play_html};
@@ -21,6 +22,8 @@ const FIRST: &str = "panda";
 pub struct PlayArguments {
     #[command(flatten)]
     robot: RobotArguments,
+    #[command(flatten)]
+    start: StartArguments,
     #[command(flatten)]
     meshes: MeshArguments,
     /// Write the page to a file instead of serving it
@@ -37,7 +40,10 @@ pub fn model(argument: Arg) -> Arg {
 }
 
 pub fn run(arguments: &PlayArguments) -> Result<String> {
-    let model = arguments.robot.load()?;
+    let model = arguments.robot.load_at(|model| Ok(arguments.start.read(model)?.0))?;
+    if arguments.start.dtheta.is_some() {
+        return Err(Failure::wrong("--dtheta has no effect: the playground begins at rest"));
+    }
     let name = &model.description().name;
     let page = page(arguments, &model)?;
     let size = format!("page: {:.1} MB", page.len() as f64 / 1e6);
@@ -57,18 +63,16 @@ fn page(arguments: &PlayArguments, model: &Model) -> Result<String> {
         None => text(&arguments.robot)?,
     };
     let drawing = arguments.meshes.drawing(&arguments.robot)?;
-    Ok(play_html(&Played { name: input::name(name_or_path), file: &file.0, text: &file.1, model, drawing: &drawing }))
+    let theta = if arguments.start.is_given() { Some(arguments.start.read(model)?.0) } else { None };
+    let name = input::name(name_or_path);
+    let theta = theta.as_deref();
+    Ok(play_html(&Played { name, file: &file.0, text: &file.1, model, drawing: &drawing, theta }))
 }
 
 /// A name and the text of the robot's file, expanded if it is xacro.
 fn text(robot: &RobotArguments) -> Result<(String, String)> {
     let name_or_path = robot.model.as_str();
-    let cannot = |error: std::io::Error| Failure::wrong(format!("{name_or_path} cannot be read: {error}"));
-    let bytes = match name_or_path {
-        "-" => input::robot_text().map_err(cannot)?.to_vec(),
-        path => std::fs::read(path).map_err(cannot)?,
-    };
-    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let text = input::robot_file(name_or_path)?;
     let file = Path::new(input::name(name_or_path))
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());

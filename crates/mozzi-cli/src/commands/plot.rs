@@ -126,7 +126,7 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let model = arguments.robot.load()?;
     let (theta, dtheta) = arguments.start.read(&model)?;
     let (time, step) = (number("--time", &arguments.time)?, number("--step", &arguments.step)?);
-    let coarsest = mozzi::simulation::Options::with_step(time, step)?.steps;
+    let coarsest = mozzi_sim::Options::with_step(time, step)?.steps;
     let steps = coarsest as f64 * f64::from(1 << u32::from(arguments.halvings));
     let cause = format!("--step {} with --halvings {}", arguments.step.trim(), arguments.halvings);
     Workload { cause, steps, rows: 0.0, bytes: 0.0, place: "memory".into(), flag: None }.check(false)?;

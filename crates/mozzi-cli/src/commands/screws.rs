@@ -5,8 +5,8 @@ use super::python::literals;
 use crate::failure::{Failure, Result};
 use crate::json;
 use crate::numbers::TWIST;
-use crate::robot::RobotArguments;
-use crate::text::{Page, beside, column, constants, rows_of, table, twists};
+use crate::robot::{RobotArguments, screen};
+use crate::text::{Page, Sections, beside, column, constants, rows_of, table, twists};
 use clap::Args;
 use mozzi::model::ScrewLists;
 use mozzi::{Model, SE3, ScrewAxis};
@@ -18,6 +18,9 @@ pub struct ScrewsArguments {
     /// Print Python literals for NumPy and the Modern Robotics package: Mlist, Glist, Slist, Blist, M
     #[arg(long, conflicts_with = "json")]
     python: bool,
+    /// Print all lists, however long
+    #[arg(long)]
+    all: bool,
 }
 
 pub fn run(arguments: &ScrewsArguments) -> Result<String> {
@@ -32,7 +35,7 @@ pub fn run(arguments: &ScrewsArguments) -> Result<String> {
         return Ok(json::print(&object));
     }
     if !arguments.python {
-        return Ok(page(&model, &lists));
+        return Ok(page(&model, &lists, if arguments.all { usize::MAX } else { screen(&model) }));
     }
     python(&model)
 }
@@ -86,11 +89,11 @@ pub fn masses(lists: &ScrewLists) -> Vec<String> {
     table(&rows_of(columns), "rlr")
 }
 
-fn page(model: &Model, lists: &ScrewLists) -> String {
+fn page(model: &Model, lists: &ScrewLists, most: usize) -> String {
     let mut page = Page::default();
     page.line(info::headline(model)).line(info::surroundings(model));
-    page.line("Frame {i} is at the centre of mass of moving link i (with all that is fixed to it), oriented as the link's frame.");
-    page.line("A screw axis is (ω, v), angular first: ω the turn's axis, v how the point at the frame's origin moves at 1 rad/s.");
+    page.line("Frame {i} is at the centre of mass of moving link i, with the axes of the link's frame.");
+    page.line("A screw axis is (ω, v): ω the turn's axis, v the velocity at the origin for 1 rad/s.");
     if model.is_floating() {
         page.line("The base, link 0, is free: its axes are the identity in its own frame, and G_0 is its inertia there. \"Base frame\" is that frame.");
     }
@@ -100,31 +103,34 @@ fn page(model: &Model, lists: &ScrewLists) -> String {
             lists.parents.iter().enumerate().map(|(i, parent)| format!("{}←{parent}", i + 1)).collect::<Vec<_>>();
         page.lines(&[parents.join("  ")]);
     }
-    page.title("S_i: screw axes in the base frame, at θ = 0").lines(&axes(lists, &lists.S));
-    match &lists.end_effector {
-        Some((name, _)) => {
-            page.title(&format!("B_i: the same in the end-effector frame {name}")).lines(&axes(lists, &lists.B));
-        }
-        None => {
-            page.title("B_i").lines(&["left out: name the frame by --end-effector".to_string()]);
-        }
-    }
-    page.title("A_i = [Ad_M_i⁻¹] S_i: the same in their own links' frames").lines(&axes(lists, &lists.A));
+    let mut sections = Sections::default();
     let poses = |symbol: &dyn Fn(usize) -> String, list: &[SE3]| {
         let blocks: Vec<_> = list.iter().enumerate().map(|(i, T)| (symbol(i), constants(T.to_matrix()))).collect();
         beside(&blocks)
     };
-    page.title("M_i: home frames {i} seen from the base, [R p], m")
-        .lines(&poses(&|i| format!("M_{}", i + 1), &lists.M));
+    sections.add("S_i", "S_i: screw axes in the base frame, at θ = 0", axes(lists, &lists.S));
     if let Some((name, T)) = &lists.end_effector {
-        page.lines(&beside(&[(format!("M: the end effector {name}"), constants(T.to_matrix()))]));
+        let title = format!("M: the end effector {name} at θ = 0, [R p], m");
+        sections.add("M", title, constants(T.to_matrix()));
     }
+    sections.add("G_i", "G_i: mass [kg], origin of {i} [m], inertia about it [kg m²]", masses(lists));
+    match &lists.end_effector {
+        Some((name, _)) => {
+            sections.add("B_i", format!("B_i: the same in the end-effector frame {name}"), axes(lists, &lists.B));
+        }
+        None => sections.add("B_i", "B_i", vec!["left out: name the frame by --end-effector".to_string()]),
+    }
+    sections.add("A_i", "A_i = [Ad_M_i⁻¹] S_i: the same in their own links' frames", axes(lists, &lists.A));
+    let home = poses(&|i| format!("M_{}", i + 1), &lists.M);
+    sections.add("M_i", "M_i: home frames {i} seen from the base, [R p], m", home);
     let relative = |i: usize| format!("M_{},{}", lists.parents[i], i + 1);
-    page.title("M_i-1,i: home frames seen from the one before, m").lines(&poses(&relative, &lists.M_relative));
+    let relative = poses(&relative, &lists.M_relative);
+    sections.add("M_i-1,i", "M_i-1,i: home frames seen from the one before, m", relative);
     let base = model.is_floating().then(|| ("G_0, the base".to_string(), constants(model.base_inertia().to_matrix())));
     let links =
         lists.G.iter().enumerate().map(|(i, G)| (format!("G_{}, {}", i + 1, lists.links[i]), constants(G.to_matrix())));
     let inertias: Vec<_> = base.into_iter().chain(links).collect();
-    page.title("G_i: spatial inertias in frames {i}, kg m² and kg").lines(&beside(&inertias));
+    sections.add("G_i as matrices", "G_i: spatial inertias in frames {i}, kg m² and kg", beside(&inertias));
+    sections.write(&mut page, most);
     page.end()
 }

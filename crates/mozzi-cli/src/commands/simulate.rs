@@ -4,10 +4,9 @@ use super::assemble::assembled;
 use super::outcome::Outcome;
 use super::simulate_page::{object, page, told};
 use crate::conditions::{EventArguments, happened};
-use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
 use crate::ground::{GroundArguments, settle};
-use crate::motors::{Followed, Limit, MotorArguments, or_hold};
+use crate::motors::{ACTUATORS, Followed, Limit, MotorArguments, or_hold};
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::report::{self, PageArguments};
@@ -15,19 +14,19 @@ use crate::robot::RobotArguments;
 use crate::state::StartArguments;
 use crate::tables::format::Format;
 use crate::text::scalar;
-use crate::workload::{BINARY, TEXT, Workload};
+use crate::workload::{self, BINARY, TEXT, Workload};
 use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
+use mozzi::Model;
 use mozzi::model::Bounds;
 use mozzi::quantities::ForwardDynamics;
-use mozzi::simulation::{
-    Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned,
-};
-use mozzi::{Model, Trajectory};
 use mozzi_engine::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};
 use mozzi_motion::trajectories::Hold;
 use mozzi_report::{Motion, Touches};
+use mozzi_sim::{
+    Account, Contacts, Ending, Event, Friction, Input, Method, Options, Recorder, Simulation, Thinned, Trajectory, Zero,
+};
 use std::ops::ControlFlow;
 
 #[derive(Args, Debug)]
@@ -48,7 +47,7 @@ pub struct SimulateArguments {
     #[arg(long, value_name = "EPS", default_value = "1e-9", allow_hyphen_values = true)]
     tolerance: String,
     /// Duration, s [default: that of the --follow table, else 2]
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    #[arg(long, alias = "duration", value_name = "SECONDS", allow_hyphen_values = true)]
     time: Option<String>,
     #[command(flatten)]
     motors: MotorArguments,
@@ -106,7 +105,7 @@ const KEPT: usize = 20_000;
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
     arguments.out.as_deref().map(log::format).transpose()?; // checked before the motion, which may take long
-    let model = arguments.robot.load()?;
+    let model = arguments.robot.load_at(|model| Ok(arguments.start.read(model)?.0))?;
     let outcome = arguments.simulate(&model)?;
     let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
     let text = match arguments.out.as_deref() {
@@ -144,7 +143,42 @@ fn within_limits(model: &Model, theta: &mut [f64]) {
     }
 }
 
+/// The rates d/M_jj of each velocity at which damping of the joints and of a controller acts, 1/s; or √(k/M_jj), if
+/// that is larger.
+fn damping_rates(model: &Model, motors: &dyn Input, theta: &[f64]) -> Result<Vec<f64>> {
+    let M = model.mass_matrix(theta)?;
+    let (mut stiffness, mut damping) = (vec![0.0; model.n()], vec![0.0; model.n()]);
+    motors.gains(&mut stiffness, &mut damping);
+    for (joint, place) in model.joints().zip(model.places()) {
+        place.velocities().for_each(|j| damping[j] += joint.damping);
+    }
+    let rate = |j: usize| (damping[j] / M[(j, j)]).max((stiffness[j] / M[(j, j)]).sqrt());
+    Ok((0..model.n()).map(rate).collect())
+}
+
 impl SimulateArguments {
+    /// A motion that diverges because a joint is stiff: the joint, and the method that works.
+    fn explained(&self, failure: Failure, model: &Model, theta: &[f64], rates: Option<&[f64]>) -> Failure {
+        let Failure::Wrong(sentence) = &failure else { return failure };
+        if !sentence.contains("diverged") || matches!(self.method, Way::Moreau) {
+            return failure;
+        }
+        let own = damping_rates(model, &Zero, theta).ok();
+        let (Some(rates), Ok(step)) = (rates.or(own.as_deref()), number("--step", &self.step)) else { return failure };
+        let fastest = (0..model.n()).max_by(|&a, &b| rates[a].total_cmp(&rates[b]));
+        match fastest.filter(|&j| rates[j] * step > 1.0) {
+            None => failure,
+            Some(j) => {
+                let name = model.velocity_names().nth(j).unwrap_or_default();
+                let (rate, step) = (scalar(rates[j].round()), scalar(0.5 / rates[j]));
+                Failure::wrong(format!(
+                    "{sentence}. `{name}` is stiff: its damping or gain acts at a rate of {rate} 1/s, too fast for this step; \
+                     --method moreau takes it implicitly, --step {step} resolves it"
+                ))
+            }
+        }
+    }
+
     fn simulate(&self, model: &Model) -> Result<Outcome> {
         let followed = self.motors.followed(model)?;
         let (mut theta, mut dtheta) = self.start.read(model)?;
@@ -161,7 +195,7 @@ impl SimulateArguments {
             within_limits(model, &mut theta);
         }
         if !contacts.is_empty() {
-            settle(model, &contacts, &mut theta, is_own)?;
+            settle(self.ground.flag(), model, &contacts, &mut theta, is_own)?;
         }
         let (theta, dtheta) = assembled(model, theta, dtheta)?;
         let hold = Hold::new(&theta, model.n());
@@ -171,16 +205,27 @@ impl SimulateArguments {
             (None, Some(followed)) => followed.reference.duration(),
             (None, None) => 2.0,
         };
-        let motors = self.motors.motors(model, controller.as_ref(), or_hold(followed.as_ref(), &hold), end)?;
+        let actuated = self.motors.actuated(&self.robot, model, self.start.name(model))?;
+        let is_actuated = actuated.is_some();
+        let actuated: Box<dyn Input> = match actuated {
+            Some(actuated) => Box::new(actuated),
+            None => Box::new(Zero),
+        };
+        let reference = or_hold(followed.as_ref(), &hold);
+        let motors = self.motors.motors(model, controller.as_ref(), reference, &contacts, end)?;
+        let gains = (self.motors.controller.is_some()).then(|| damping_rates(model, &motors, &theta)).transpose()?;
         let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
-        let input = (&mut motors, self.motors.wrench(model, end)?);
+        let input = ((&mut motors, actuated), self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
         self.workload(model, end)?.check(self.allow_large)?;
+        workload::matrices(model)?;
         let options = self.options(end, limits)?;
-        let mut tracking = followed.as_ref().map(|followed| Tracking::new(model, &followed.reference));
+        let is_led = followed.is_some() || controller.is_some();
+        let mut tracking = is_led.then(|| Tracking::new(model, &reference));
         let names: Vec<String> = contacts.names().collect();
-        let (motion, account, ending, touches) =
-            self.integrate(model, [&theta, &dtheta], input, options, (events, contacts), &mut tracking)?;
+        let (motion, account, ending, touches) = self
+            .integrate(model, [&theta, &dtheta], input, options, (events, contacts), &mut tracking)
+            .map_err(|failure| self.explained(failure, model, &theta, gains.as_deref()))?;
         let Ending { events, stops, closing, method, one_sided, contact_events, .. } = ending;
         Ok(Outcome {
             method,
@@ -192,7 +237,11 @@ impl SimulateArguments {
             step: if end == 0.0 { number("--step", &self.step)? } else { options.step() },
             duration: end,
             account,
-            motors: controller.as_ref().map_or_else(|| self.motors.torque.clone(), Controller::name),
+            motors: match (&controller, &self.motors.torque) {
+                (Some(controller), _) => controller.name(),
+                (None, Some(torque)) => torque.clone(),
+                (None, None) => if is_actuated { ACTUATORS } else { "zero" }.to_string(),
+            },
             overloads: motors.overloads().cloned().collect(),
             stops,
             closing: (model.constraint_rows() > 0).then_some(closing),

@@ -1,13 +1,15 @@
 //! The output of `mozzi simulate`: a table for a file, JSON, or a page.
 
 use super::outcome::Outcome;
+use crate::angles;
 use crate::conditions::happened;
 use crate::json;
 use crate::robot::Units;
-use crate::text::{Decimals, Page, about, scalar, table};
-use mozzi::simulation::{Closing, ContactEvent, Energy, OneSidedAccount, Stopped};
-use mozzi::{Model, Trajectory};
+use crate::text::{Decimals, Page, about, page_width, rows_of, scalar, table, width};
+use mozzi::{Model, SE3, SO3};
 use mozzi_motion::controllers::Overload;
+use mozzi_sim::Trajectory;
+use mozzi_sim::{Closing, ContactEvent, Energy, OneSidedAccount, Stopped};
 use serde_json::{Value, json};
 
 /// Rows of the table on the screen.
@@ -73,42 +75,97 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
     )
 }
 
-/// Positions that fit into a row: eight, or a floating base's seven.
-fn shown_positions(model: &Model) -> usize {
-    match model.is_floating() {
-        true => 7,
-        false => 8,
+/// Rounding errors, relative to 1 rad or m, or to the largest energy.
+const NOISE: f64 = 1e-12;
+
+/// The largest energy of a motion.
+fn energy_scale(motion: &Trajectory) -> f64 {
+    motion.energy.iter().fold(0.0_f64, |m, e| m.max(e.kinetic.abs()).max(e.potential.abs()))
+}
+
+/// Joints with an error of their own.
+const TRACKED: usize = 12;
+
+/// Joints whose positions fit into a row.
+fn shown_positions() -> usize {
+    (page_width().saturating_sub(20) / 9).min(8)
+}
+
+/// The columns of positions: those of the joints, or of a floating base its height, its roll, pitch and yaw, and the
+/// centre of mass.
+fn places(model: &Model, theta: &[f64]) -> Vec<f64> {
+    let shown = shown_positions().min(theta.len());
+    if !model.is_floating() {
+        return angles::shown(&theta[..shown], &angles::of_positions(model)[..shown]);
     }
+    let (rpy, z) = match theta.first_chunk::<7>() {
+        Some(&pose) => (roll_pitch_yaw(SE3::from_pose(pose).R), pose[6]),
+        None => ([0.0; 3], 0.0),
+    };
+    let com = model.center_of_mass(theta).map_or([f64::NAN; 3], |c| c.0);
+    [[z].as_slice(), &angles::shown(&rpy, &[true; 3]), &com].concat()
+}
+
+/// R = Rot(z, yaw) Rot(y, pitch) Rot(x, roll).
+fn roll_pitch_yaw(R: SO3) -> [f64; 3] {
+    let r = R.matrix().rows();
+    [r[2][1].atan2(r[2][2]), (-r[2][0]).clamp(-1.0, 1.0).asin(), r[1][0].atan2(r[0][0])]
 }
 
 /// Some rows of a motion: t, θ, 𝒦, 𝒫, drift.
 pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
-    let (last, n) = (motion.len() - 1, motion.nq.min(shown_positions(model)));
-    let picked: Vec<usize> = (0..=shown).map(|k| k * last / shown.max(1)).collect();
-    let mut picked = picked;
+    let last = motion.len() - 1;
+    let mut picked: Vec<usize> = (0..=shown).map(|k| k * last / shown.max(1)).collect();
     picked.dedup();
-    let positions: Vec<String> = match !model.configuration_space().is_flat() {
-        true => model.position_names().take(n).map(str::to_string).collect(),
-        false => (1..=n).map(|j| format!("θ_{j}")).collect(),
+    let at: Vec<Vec<f64>> = picked.iter().map(|&k| places(model, motion.sample(k).theta)).collect();
+    let n = at.first().map_or(0, Vec::len);
+    let heads: Vec<String> = match (model.is_floating(), model.configuration_space().is_flat()) {
+        (true, _) => ["z [m]", "roll", "pitch", "yaw", "com x", "y", "z"].map(str::to_string).to_vec(),
+        (_, false) => model.position_names().take(n).map(str::to_string).collect(),
+        (_, true) => (1..=n).map(|j| format!("θ_{j}")).collect(),
     };
-    let heads = positions.into_iter().chain(["K [J]", "P [J]", "drift [J]"].map(str::to_string));
-    let mut cells = vec![std::iter::once("t [s]".to_string()).chain(heads).collect::<Vec<_>>()];
-    let decimals = |pick: &dyn Fn(usize) -> f64| Decimals::of(&picked.iter().map(|&k| pick(k)).collect::<Vec<_>>());
-    let theta = Decimals::of(picked.iter().flat_map(|&k| &motion.sample(k).theta[..n]));
-    let [time, kinetic, potential] = [
-        decimals(&|k| motion.t[k]),
-        decimals(&|k| motion.energy[k].kinetic),
-        decimals(&|k| motion.energy[k].potential),
+    // rounding errors: of angles and lengths of about 1, and of the energies
+    let scale = energy_scale(motion);
+    let (places_noise, energy_noise) = (NOISE, NOISE * scale);
+    let column = |c: usize| at.iter().map(|row| row[c]).collect::<Vec<_>>();
+    let format =
+        |columns: &[usize]| Decimals::above(places_noise, &columns.iter().flat_map(|&c| column(c)).collect::<Vec<_>>());
+    let formats: Vec<Decimals> = match model.is_floating() {
+        true => {
+            let (lengths, angles) = (format(&[0, 4, 5, 6]), format(&[1, 2, 3]));
+            (0..n).map(|c| if (1..=3).contains(&c) { angles } else { lengths }).collect()
+        }
+        false => vec![format(&(0..n).collect::<Vec<_>>()); n],
+    };
+    let of_energy = |pick: fn(&Energy) -> f64| {
+        let values: Vec<f64> = picked.iter().map(|&k| pick(&motion.energy[k])).collect();
+        let decimals = Decimals::above(energy_noise, &values);
+        values.into_iter().map(|x| decimals.show(x)).collect::<Vec<_>>()
+    };
+    let drift = |&k: &usize| {
+        Some(motion.drift(k)).filter(|drift| drift.abs() > f64::EPSILON * scale).map_or("0".to_string(), about)
+    };
+    let ends = [
+        ("K [J]", of_energy(|energy| energy.kinetic)),
+        ("P [J]", of_energy(|energy| energy.potential)),
+        ("drift", picked.iter().map(drift).collect()),
     ];
-    for &k in &picked {
-        let sample = motion.sample(k);
-        let mut row = vec![time.show(sample.t)];
-        row.extend(sample.theta.iter().take(n).map(|&x| theta.show(x)));
-        row.extend([kinetic.show(sample.energy.kinetic), potential.show(sample.energy.potential)]);
-        row.push(about(motion.drift(k)));
-        cells.push(row);
+    let time = Decimals::of(&picked.iter().map(|&k| motion.t[k]).collect::<Vec<_>>());
+    let mut columns =
+        vec![[vec!["t [s]".to_string()], picked.iter().map(|&k| time.show(motion.t[k])).collect()].concat()];
+    for (c, head) in heads.into_iter().enumerate() {
+        columns.push([vec![head], at.iter().map(|row| formats[c].show(row[c])).collect()].concat());
     }
-    table(&cells, "r")
+    // as many of the energies as fit
+    for (head, cells) in ends {
+        let more = [&columns[..], &[[vec![head.to_string()], cells].concat()]].concat();
+        let wide: usize = more.iter().map(|cells| 2 + cells.iter().map(|cell| width(cell)).max().unwrap_or(0)).sum();
+        if wide > page_width() - 4 {
+            break;
+        }
+        columns = more;
+    }
+    table(&rows_of(columns), "r")
 }
 
 pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
@@ -125,31 +182,47 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
         outcome.motors
     ));
     page.blank().lines(&rows(model, motion, SHOWN));
-    let shown = shown_positions(model);
-    if model.nq() > shown {
-        let what = if model.is_floating() { "positions" } else { "joints" };
-        page.lines(&[format!("… the first {shown} of {} {what}; --out FILE.csv or --json gives all", model.nq())]);
+    let shown = shown_positions();
+    if model.is_floating() {
+        let unit = angles::unit("rad");
+        let what = "z of the base, its roll, pitch, yaw";
+        page.lines(&[format!("{what} [{unit}], centre of mass [m]; --out FILE.csv or --json gives all of θ")]);
+    } else if model.nq() > shown {
+        page.lines(&[format!("… the first {shown} of {} joints; --out FILE.csv or --json gives all", model.nq())]);
     }
     let (account, end) = (&outcome.account, outcome.account.last);
     page.blank().line(format!("θ in {}; K kinetic, P potential energy", Units::of(model).input(0)));
+    // rounding errors of energies are 0
+    let scale = energy_scale(motion);
+    let energy = |x: f64| scalar(if x.abs() <= NOISE * scale { 0.0 } else { x });
     page.line(format!(
         "work since the start: motors {} J, lost in friction {} J, given to the environment {} J",
-        scalar(end.motor_work),
-        scalar(end.friction_loss),
-        scalar(end.applied_work)
+        energy(end.motor_work),
+        energy(end.friction_loss),
+        energy(end.applied_work)
     ));
+    let drift = if account.largest_drift <= f64::EPSILON * scale { 0.0 } else { account.largest_drift };
     page.line(format!(
         "drift: energy error of the method, at most {} J; largest kinetic energy {} J",
-        about(account.largest_drift),
-        scalar(account.largest_kinetic_energy)
+        about(drift),
+        energy(account.largest_kinetic_energy)
     ));
     if let Some(error) = &outcome.tracking {
-        page.line(format!(
-            "tracking error θ_d ⊖ θ: at most {}, root mean square at most {} ({})",
-            about(error.worst()),
-            about(error.worst_rms()),
-            Units::of(model).input(0)
-        ));
+        let unit = Units::of(model).input(0);
+        let are_angles: Vec<bool> = angles::of_velocities(model).split_off(model.base().velocities());
+        let [largest, rms] = [&error.largest, &error.rms].map(|list| angles::shown(list, &are_angles));
+        page.line(format!("tracking error e = θ_d ⊖ θ [{unit}]:"));
+        let names = model.velocity_names().skip(model.base().velocities());
+        let mut cells = vec![["", "largest", "rms"].map(str::to_string).to_vec()];
+        for ((name, &largest), &rms) in names.zip(&largest).zip(&rms).take(TRACKED) {
+            let cell = |x: f64| about(if x.abs() <= NOISE { 0.0 } else { x });
+            cells.push(vec![name.to_string(), cell(largest), cell(rms)]);
+        }
+        page.lines(&table(&cells, "lr"));
+        if largest.len() > TRACKED {
+            let worst = about(largest.iter().fold(0.0, |m, &x| x.max(m)));
+            page.lines(&[format!("… of {} velocities, of which the largest error is {worst}", largest.len())]);
+        }
     }
     told(outcome).iter().for_each(|line| {
         page.line(line);

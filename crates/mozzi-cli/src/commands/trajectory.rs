@@ -1,5 +1,6 @@
 //! `mozzi trajectory`: plans a motion.
 
+use crate::angles;
 use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
@@ -17,7 +18,8 @@ use clap::{Args, ValueEnum};
 use mozzi::{Model, SE3};
 use mozzi_motion::Goal;
 use mozzi_motion::trajectories::{
-    Cartesian, Desired, Ends, Limits, Line, Path, Profile, Reference, Shape, Spline, Timed, stretched, time_optimal,
+    Cartesian, Desired, Ends, Limits, Line, Path, Profile, Recorded, Reference, Shape, Spline, Timed, stretched,
+    time_optimal,
 };
 use serde_json::{Value, json};
 
@@ -27,13 +29,13 @@ pub struct TrajectoryArguments {
     robot: RobotArguments,
     /// Initial positions, or the name of a state [default: the robot's start, else joints at 0 and a floating base
     /// at {s}]
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
+    #[arg(long, visible_aliases = ["theta", "q"], value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     from: Option<String>,
     /// Final positions, or the name of a state
     #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
     to: Option<String>,
     /// Via points in a table with columns theta_1 …; with a column t, passed at these times by a spline at rest at
-    /// both ends
+    /// both ends, or at the velocities dtheta_1 … and accelerations ddtheta_1 … of the table
     #[arg(long, value_name = "FILE")]
     via: Option<String>,
     /// The path: of the joints, or of the end effector to the pose of --to or of --position and --rpy
@@ -48,7 +50,7 @@ pub struct TrajectoryArguments {
     #[arg(long)]
     profile: Option<Shaped>,
     /// Duration, s [default: as short as the limits allow]
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    #[arg(long, alias = "duration", value_name = "SECONDS", allow_hyphen_values = true)]
     time: Option<String>,
     /// trapezoidal only: the fraction of the time spent accelerating, and decelerating
     #[arg(long, value_name = "FRACTION", default_value = "0.25", allow_hyphen_values = true)]
@@ -56,14 +58,14 @@ pub struct TrajectoryArguments {
     /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     max_velocity: Option<String>,
-    /// Acceleration limits, rad/s² or m/s² [default: none]
+    /// Acceleration limits, rad/s² or m/s² [default: the robot's, which URDF 1.2 has]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     max_acceleration: Option<String>,
     /// Torque limits, N m or N [default: the robot's]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     max_torque: Option<String>,
     /// Time between two rows, s
-    #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
     step: String,
     /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n
     #[arg(long, value_name = "FILE.csv")]
@@ -101,7 +103,7 @@ const PLACES: usize = 500;
 
 pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
-    let model = arguments.robot.load()?;
+    let model = arguments.robot.load_at(|model| positions("--from", arguments.from.as_deref(), model))?;
     let limits = arguments.limits(&model)?;
     let motion = arguments.motion(&model, &limits)?;
     let step = number("--step", &arguments.step)?;
@@ -163,28 +165,42 @@ impl TrajectoryArguments {
         })
     }
 
-    fn motion<'m>(&self, model: &'m Model, limits: &Limits) -> Result<Timed<Box<dyn Path + 'm>>> {
+    fn motion<'m>(&self, model: &'m Model, limits: &Limits) -> Result<Box<dyn Reference + 'm>> {
         let path: Box<dyn Path + 'm> = match &self.via {
             Some(file) => {
                 let samples = table_file::read(file, model)?;
-                let points = samples.need("theta", model)?.chunks(model.nq());
-                let points = &points.map(<[f64]>::to_vec).collect::<Vec<_>>();
+                let rows = |table: &[f64], width: usize| table.chunks(width).map(<[f64]>::to_vec).collect::<Vec<_>>();
+                let points = &rows(samples.need("theta", model)?, model.nq());
                 let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
-                match &samples.t {
-                    Some(times) => {
-                        check_times(&samples, times)?;
-                        if self.profile.is_some() {
-                            return Err(Failure::wrong(format!(
-                                "--profile and the column t of {file} both define the timing, expected one of them"
-                            )));
-                        }
-                        let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
-                        let span = times[times.len() - 1] - times[0];
-                        let duration = self.time.as_deref().map_or(Ok(span), |text| number("--time", text))?;
-                        return Ok(Timed::new(Box::new(spline), Profile::linear(duration)?));
+                let [dtheta, ddtheta] =
+                    ["dtheta", "ddtheta"].map(|name| samples.tables.get(name).map(|table| rows(table, model.n())));
+                if let Some(times) = &samples.t {
+                    check_times(&samples, times)?;
+                    if self.profile.is_some() {
+                        return Err(Failure::wrong(format!(
+                            "--profile and the column t of {file} both define the timing, expected one of them"
+                        )));
                     }
-                    None => Box::new(Spline::through(model, points, Ends::Natural).map_err(place)?),
+                    let span = times[times.len() - 1] - times[0];
+                    let duration = self.time.as_deref().map_or(Ok(span), |text| number("--time", text))?;
+                    if dtheta.is_none() && ddtheta.is_none() {
+                        let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
+                        return Ok(Box::new(Timed::new(spline, Profile::linear(duration)?)));
+                    }
+                    if self.time.is_some() && (duration - span).abs() > 1e-12 * span {
+                        return Err(Failure::wrong(format!(
+                            "--time is {duration} s, but {file} has velocities at times over {span} s; expected this \
+                             duration, or a table without velocities"
+                        )));
+                    }
+                    let begun: Vec<f64> = times.iter().map(|t| t - times[0]).collect();
+                    let motion = Recorded::new(model, &begun, points, dtheta.as_deref(), ddtheta.as_deref());
+                    return Ok(Box::new(motion.map_err(place)?));
                 }
+                for (name, _) in [("dtheta", dtheta), ("ddtheta", ddtheta)].iter().filter(|(_, rows)| rows.is_some()) {
+                    failure::note(&format!("{file}: the columns {name}_… have no effect without a column t"));
+                }
+                Box::new(Spline::through(model, points, Ends::Natural).map_err(place)?)
             }
             None => self.path(model)?,
         };
@@ -203,7 +219,7 @@ impl TrajectoryArguments {
             (None, _) => stretched(model, &path, &shape(1.0)?, limits, PLACES)?,
             (Some(text), _) => shape(number("--time", text)?)?,
         };
-        Ok(Timed::new(path, profile))
+        Ok(Box::new(Timed::new(path, profile)))
     }
 
     fn path<'m>(&self, model: &'m Model) -> Result<Box<dyn Path + 'm>> {
@@ -296,11 +312,13 @@ fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limit
     let mut cells =
         vec![std::iter::once("t [s]".to_string()).chain((1..=shown).map(|j| format!("θ_{j}"))).collect::<Vec<_>>()];
     let picked: Vec<usize> = (0..=SHOWN).map(|k| k * (rows.len() - 1) / SHOWN).collect();
-    let theta = Decimals::of(rows.iter().flat_map(|(_, row)| &row.theta[..shown]));
+    let are_angles = angles::of_positions(model);
+    let of = |row: &Desired| angles::shown(&row.theta[..shown], &are_angles[..shown]);
+    let theta = Decimals::of(&rows.iter().flat_map(|(_, row)| of(row)).collect::<Vec<_>>());
     let time = Decimals::of(rows.iter().map(|(t, _)| t));
     for &k in &picked {
         let (t, row) = &rows[k];
-        cells.push(std::iter::once(time.show(*t)).chain(row.theta[..shown].iter().map(|&q| theta.show(q))).collect());
+        cells.push(std::iter::once(time.show(*t)).chain(of(row).into_iter().map(|q| theta.show(q))).collect());
     }
     cells.dedup();
     page.blank().lines(&table(&cells, "r")).blank();
@@ -322,6 +340,10 @@ fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limit
         } else {
             String::new()
         };
+        let are_angles = angles::of_velocities(model);
+        let is_of_angles = what != "torque" && are_angles.iter().all(|&is_angle| is_angle);
+        let most = if is_of_angles && angles::are_degrees() { most.to_degrees() } else { most };
+        let unit = if is_of_angles { unit } else { angles::in_radians(&unit) };
         page.line(format!("largest {what}: {} {unit}{of}", scalar(most)));
     }
     if let Some(file) = file {

@@ -1,10 +1,11 @@
 //! `mozzi view`: shows the robot, still or moving, in a file or served to this machine's browser.
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::json::print;
 use crate::report::{self, PageArguments};
 use crate::robot::RobotArguments;
 use crate::serve;
+use crate::state::StartArguments;
 use clap::Args;
 use serde_json::json;
 
@@ -17,9 +18,8 @@ pub struct ViewArguments {
     trajectory: Option<String>,
     #[command(flatten)]
     page: PageArguments,
-    /// Named state shown at first [default: the robot's start]
-    #[arg(long, value_name = "NAME", conflicts_with = "trajectory")]
-    state: Option<String>,
+    #[command(flatten)]
+    start: StartArguments,
     /// Write the page to a file instead of serving it
     #[arg(long, value_name = "FILE.html")]
     out: Option<String>,
@@ -29,9 +29,10 @@ pub struct ViewArguments {
 }
 
 pub fn run(arguments: &ViewArguments) -> Result<String> {
-    let mut model = arguments.robot.load()?;
-    if let Some(name) = &arguments.state {
-        model = model.with_start(name)?;
+    let model = arguments.robot.load_at(|model| Ok(arguments.start.read(model)?.0))?;
+    let model = arguments.start.started(model)?;
+    if arguments.trajectory.is_some() && arguments.start.is_given() {
+        return Err(Failure::wrong("a table of a motion and --theta or --state are both given, expected one of them"));
     }
     let motion = arguments.trajectory.as_deref().map(|file| report::read(file, &model)).transpose()?;
     let motion = motion.map(|motion| {

@@ -6,7 +6,6 @@ use crate::input;
 use crate::xacro_arguments::{XacroArguments, assignment};
 use clap::Args;
 use mozzi_urdf::{Settings, expanded};
-use std::path::Path;
 
 /// A larger file is refused.
 const MOST: usize = 64 << 20;
@@ -41,13 +40,6 @@ pub fn run(command: &XacroCommand) -> Result<String> {
     };
     match &command.out {
         None => Ok(text),
-        Some(out)
-            if Path::new(out)
-                .canonicalize()
-                .is_ok_and(|out| Path::new(file).canonicalize().is_ok_and(|file| file == out)) =>
-        {
-            Err(Failure::wrong(format!("-o is the file itself, `{file}`, expected another name")))
-        }
         Some(out) => {
             save(out, &text)?;
             failure::note(&format!("{file} is expanded to {out}"));

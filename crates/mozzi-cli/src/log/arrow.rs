@@ -7,7 +7,7 @@ use arrow_array::RecordBatch;
 use arrow_ipc::writer::FileWriter;
 use arrow_schema::ArrowError;
 use mozzi::Model;
-use mozzi::simulation::Sample;
+use mozzi_sim::Sample;
 use std::fs::File;
 use std::io::{BufWriter, Error, Result};
 

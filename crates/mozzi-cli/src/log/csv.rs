@@ -2,7 +2,7 @@
 
 use super::Rows;
 use super::row::values;
-use mozzi::simulation::Sample;
+use mozzi_sim::Sample;
 use std::io::{Result, Write};
 
 pub struct Csv<W>(W);

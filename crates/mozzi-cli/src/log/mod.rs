@@ -21,7 +21,7 @@ use crate::output::{Output, failed};
 use crate::tables::format::{Format, MOTION};
 use crate::terminal;
 use mozzi::Model;
-use mozzi::simulation::{Recorder, Sample};
+use mozzi_sim::{Recorder, Sample};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
 

@@ -4,7 +4,7 @@ use super::Rows;
 use super::row::{names, values};
 use crate::tables::npy::structured_header;
 use mozzi::Model;
-use mozzi::simulation::Sample;
+use mozzi_sim::Sample;
 use std::fs::File;
 use std::io::{BufWriter, Result, Seek, SeekFrom, Write};
 

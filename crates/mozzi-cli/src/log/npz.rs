@@ -6,7 +6,7 @@ use super::row::{groups, values};
 use crate::tables::npy::plain_header;
 use crate::tables::npz::stored;
 use mozzi::Model;
-use mozzi::simulation::Sample;
+use mozzi_sim::Sample;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Result, Seek, SeekFrom, Write, copy};
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use crate::columns;
 use crate::recogniser::ENERGIES;
 use mozzi::Model;
-use mozzi::simulation::Sample;
+use mozzi_sim::Sample;
 
 /// A part of a row: its name, its columns' names, and whether it is a vector (even with one joint).
 pub struct Group {

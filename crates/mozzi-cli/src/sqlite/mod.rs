@@ -4,9 +4,11 @@
 mod record;
 mod varint;
 
+use mozzi_urdf::files;
 use record::Record;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
 use varint::varint;
 
 /// The first bytes of every file.
@@ -68,7 +70,7 @@ impl Table {
 impl Database {
     /// Opens a file; one whose changes wait in a write-ahead log is refused.
     pub fn open(path: &str) -> Fails<Self> {
-        let mut file = File::open(path).map_err(|error| error.to_string())?;
+        let mut file = files::open(Path::new(path)).map_err(|error| error.to_string())?;
         let length = file.metadata().map_err(|error| error.to_string())?.len();
         let mut header = [0; 100];
         file.read_exact(&mut header).map_err(|_| "it is no SQLite file: it is too short".to_string())?;

@@ -7,8 +7,9 @@ use super::precision::Precision;
 use crate::failure::{Failure, Result};
 use crate::input::cannot;
 use crate::output::Output;
-use std::fs::File;
+use mozzi_urdf::files;
 use std::io::{BufReader, BufWriter, Write};
+use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -16,7 +17,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 pub fn read(file: &str, mut accept: impl FnMut(&str, &Header) -> Result<()>) -> Result<Vec<Array>> {
     caught(file, || {
         let cannot = |error: &dyn std::fmt::Display| cannot(file, error);
-        let opened = File::open(file).map_err(|error| cannot(&error))?;
+        let opened = files::open(Path::new(file)).map_err(|error| cannot(&error))?;
         let length = opened.metadata().map_err(|error| cannot(&error))?.len();
         let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| cannot(&error))?;
         let (mut unpacked, mut stored, mut arrays) = (Unpacked::of(length), length, Vec::<Array>::new());
@@ -47,7 +48,7 @@ pub fn read(file: &str, mut accept: impl FnMut(&str, &Header) -> Result<()>) -> 
 /// The number of positions of a state, by the shape of `theta`; 0 without it.
 pub fn positions(file: &str) -> Result<usize> {
     caught(file, || {
-        let opened = File::open(file).map_err(|error| cannot(file, &error))?;
+        let opened = files::open(Path::new(file)).map_err(|error| cannot(file, &error))?;
         let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| cannot(file, &error))?;
         let Ok(mut theta) = archive.by_name("theta.npy") else { return Ok(0) };
         let header = npy::header(&format!("{file}: `theta`"), &mut theta)?;

@@ -7,14 +7,15 @@ use super::{How, recognised};
 use crate::failure::Result;
 use crate::input::cannot;
 use mozzi::Model;
+use mozzi_urdf::files;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-use std::fs::File;
+use std::path::Path;
 
 /// The robot is chosen by the columns' names.
 pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) -> Result<Samples> {
     caught(file, || {
-        let opened = File::open(file).map_err(|error| cannot(file, &error))?;
+        let opened = files::open(Path::new(file)).map_err(|error| cannot(file, &error))?;
         let length = opened.metadata().map_err(|error| cannot(file, &error))?.len();
         let builder = ParquetRecordBatchReaderBuilder::try_new(opened).map_err(|error| cannot(file, &error))?;
         let names: Vec<String> = builder.schema().fields().iter().map(|field| field.name().clone()).collect();

@@ -16,6 +16,11 @@ pub fn text(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
+/// The words of a page, however its lines are broken.
+pub fn words(page: &str) -> String {
+    page.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 pub fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&text(&[arguments, &["--json"]].concat())).expect("JSON")
 }
@@ -58,4 +63,20 @@ pub fn file(folder: &std::path::Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
     std::fs::write(&path, text).expect("a file");
     path.to_str().expect("a path of text").to_string()
+}
+
+/// Columns that a line takes: combining marks take none.
+fn width(line: &str) -> usize {
+    line.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
+}
+
+/// The text of a command, which has at most so many lines of at most 80 columns.
+pub fn screen(arguments: &[&str], most: usize) -> String {
+    let page = text(arguments);
+    let lines = page.lines().count();
+    assert!(lines <= most, "{arguments:?}: {lines} lines, expected at most {most}");
+    if let Some(wide) = page.lines().find(|line| width(line) > 80) {
+        panic!("{arguments:?}: {} columns: {wide}", width(wide));
+    }
+    page
 }

@@ -3,7 +3,7 @@
 use super::files::read_npz;
 use super::states::States;
 use super::{largest, tied};
-use crate::common::{assert_close, folder, json, mozzi, numbers, text};
+use crate::common::{assert_close, folder, json, mozzi, numbers, text, words};
 use mozzi::quantities::{LIST, Of, Uses};
 use serde_json::Value;
 
@@ -64,7 +64,7 @@ fn every_quantity_is_the_same_at_one_state_and_in_a_table() {
                 assert_close(&one, &values[state * width..][..width], 1e-11 * largest(values));
             }
             let page = text(&[&["compute", "ur5", &name, "--constraints", &rod], subject, &flags].concat());
-            assert!(page.contains(declaration.formula), "{page}");
+            assert!(words(&page).contains(declaration.formula), "{page}");
         }
     }
 }
@@ -86,10 +86,10 @@ fn the_list_has_formulas_flags_and_shapes() {
     let help = text(&["compute", "--help"]);
     for declaration in LIST {
         let name = declaration.name.replace('_', "-");
-        assert!(page.contains(&format!("{name}: {}\n", declaration.formula)), "{name} in {page}");
+        assert!(words(&page).contains(&format!("{name}: {} takes", declaration.formula)), "{name} in {page}");
         assert!(help.contains(&name), "{name} in {help}");
     }
-    for line in ["takes --theta, --dtheta, --frame, --state\n", "--wrench, --gravity, --state\n", "gives M (n, n)\n"] {
+    for line in ["takes --theta, --dtheta, --frame, --state\n", "--gravity, --state\n", "gives M (n, n)\n"] {
         assert!(page.contains(line), "{line} in {page}");
     }
     assert_eq!(mozzi(&["compute"]).status.code(), Some(2));
@@ -97,7 +97,7 @@ fn the_list_has_formulas_flags_and_shapes() {
 
 #[test]
 fn units_are_those_of_the_robots_joints() {
-    let page = text(&["compute", "ur5", "inverse-dynamics-derivatives"]);
+    let page = text(&["compute", "ur5", "inverse-dynamics-derivatives", "-v"]);
     for title in ["d_theta [N m, each per unit of its column]", "velocities", "rad/s  "] {
         assert!(page.contains(title), "{title} in {page}");
     }

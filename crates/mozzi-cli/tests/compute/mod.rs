@@ -330,7 +330,7 @@ fn bench_tells_this_machines_times() {
         assert!(number("difference") <= most, "{timing}");
     }
     assert!(!table["processor"].as_str().expect("a name").is_empty());
-    let page = common::text(&small);
+    let page = common::text(&[&small[..], &["--all"]].concat());
     for word in
         ["one state", "arrays f64", "arrays f32", "kernels: ", "body-jacobian", "on 2 threads", "70 states per batch"]
     {

@@ -55,7 +55,9 @@ impl<T: Number> Batch<T> {
             let is_unit = |square: T| (square - one) <= near && (one - square) <= near;
             if !first.iter().all(|&first| is_unit(square(first))) {
                 let row: Vec<f64> = row.iter().map(|&x| x.into()).collect();
-                self.model().check_configuration(&row).map_err(|source| Error::State { index, source })?;
+                self.model()
+                    .check_configuration(&row)
+                    .map_err(|source| Error::State { index, source: source.into() })?;
             }
         }
         Ok(())

@@ -2,8 +2,8 @@
 
 use crate::{Arguments, Batch, Engine, Form, Kernel, Refusal, Shape, is_too_long, pivot_names, record_quantity};
 use mozzi::quantities::{ForwardDynamics, Of, Query};
-use mozzi::simulation::{self, Input, Options, Simulation};
-use mozzi::{Error, Model, Trajectory, fast, least_is_clear};
+use mozzi::{Error, Model, fast, least_is_clear};
+use mozzi_sim::{Input, Options, Simulation};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A robot with some quantities as machine code, at one state and at many, in its own gravity, its base at rest, no
@@ -229,7 +229,7 @@ impl Machine {
 /// The most outputs of a program: a quantity's, and two kinds of pivots.
 const MOST_OUTPUTS: usize = mozzi::quantities::MOST_OUTPUTS + 2;
 
-impl simulation::ForwardDynamics for Compiled {
+impl mozzi_sim::ForwardDynamics for Compiled {
     fn model(&self) -> &Model {
         self.model()
     }
@@ -242,17 +242,17 @@ impl simulation::ForwardDynamics for Compiled {
 impl Compiled {
     /// Machine code for θ̈, if there is any: the [`forward_dynamics`](Simulation::forward_dynamics) of a simulation
     /// with events, recorders or progress.
-    pub fn simulator(&self) -> Option<&dyn simulation::ForwardDynamics> {
+    pub fn simulator(&self) -> Option<&dyn mozzi_sim::ForwardDynamics> {
         let is_code = matches!(self.engine(ForwardDynamics), Engine::MachineCode(..));
-        is_code.then_some(self as &dyn simulation::ForwardDynamics)
+        is_code.then_some(self as &dyn mozzi_sim::ForwardDynamics)
     }
 
-    /// Simulates the motion from (θ(0), θ̇(0)): see [`Model::simulate`]. Forward dynamics is machine code if it was
+    /// Simulates the motion from (θ(0), θ̇(0)): see [`mozzi_sim::simulate`]. Forward dynamics is machine code if it was
     /// compiled, no wrenches are applied and gravity is the robot's own.
     ///
     /// ```
     /// use mozzi::quantities::ForwardDynamics;
-    /// use mozzi::simulation::{Options, Zero};
+    /// use mozzi_sim::{Options, Zero};
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let model = mozzi_urdf::open("ur5")?.build()?;
     /// let robot = mozzi_engine::compile(&model, &[ForwardDynamics.into()])?;
@@ -262,14 +262,14 @@ impl Compiled {
     /// ```
     ///
     /// # Errors
-    /// See [`Model::simulate`].
+    /// See [`mozzi_sim::simulate`].
     pub fn simulate(
         &self,
         theta: &[f64],
         dtheta: &[f64],
         input: impl Input,
         options: &Options,
-    ) -> Result<Trajectory, Error> {
+    ) -> Result<mozzi_sim::Trajectory, mozzi_sim::Error> {
         let simulation = Simulation { forward_dynamics: self.simulator(), ..Simulation::new(*options) };
         simulation.run(self.model(), theta, dtheta, input).map(|run| run.motion)
     }

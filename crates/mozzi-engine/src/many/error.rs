@@ -35,12 +35,15 @@ pub enum Error {
     State {
         /// Its index.
         index: usize,
-        /// The reason.
-        source: mozzi::Error,
+        /// The reason; that of a quantity is a [`mozzi_sim::Error::Model`].
+        source: mozzi_sim::Error,
     },
     /// An error that concerns all states.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
+    /// An error of a simulation that concerns all states.
+    #[error(transparent)]
+    Simulation(#[from] mozzi_sim::Error),
     /// Not a shape of machine code for several states of this number type, or not of this processor.
     #[error("machine code of {} for {} states at once is not for these numbers, or not for this processor", shape.instruction_set(), shape.lanes())]
     Shape {
@@ -61,7 +64,7 @@ impl Error {
     /// The error of the first state that failed, of those of all chunks.
     pub(crate) fn of_first(errors: Vec<Vec<(usize, mozzi::Error)>>) -> Result<(), Self> {
         match errors.into_iter().flatten().min_by_key(|(index, _)| *index) {
-            Some((index, source)) => Err(Error::State { index, source }),
+            Some((index, source)) => Err(Error::State { index, source: source.into() }),
             None => Ok(()),
         }
     }

@@ -1,4 +1,4 @@
-//! Rollouts of many robots of one model, and gradients through them: [`mozzi::simulation::Rollout`] together, or
+//! Rollouts of many robots of one model, and gradients through them: [`mozzi_sim::Rollout`] together, or
 //! [one by one](each).
 
 mod each;
@@ -6,8 +6,8 @@ mod each;
 use crate::many::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error};
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsVjp};
-use mozzi::simulation::{ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables};
 use mozzi::{Environment, Model, Vec3};
+use mozzi_sim::{ExplicitSteps, LARGEST, Method, ParameterGradient, Stage, StageDynamics, Steps, Tables};
 use std::convert::identity;
 
 /// Robots that one thread moves together.
@@ -24,7 +24,7 @@ pub struct BatchRollout {
     pub method: Method,
     /// In {s} coordinates, m/s², in place of the robot's own.
     pub gravity: Option<Vec3>,
-    /// Steps between checkpoints, at least 1; by default as in [`mozzi::simulation::Rollout`].
+    /// Steps between checkpoints, at least 1; by default as in [`mozzi_sim::Rollout`].
     pub checkpoints_every: Option<usize>,
 }
 
@@ -54,7 +54,7 @@ impl Batch<f64> {
     ///
     /// # Errors
     /// A table has the wrong length, the options are those of no rollout (see
-    /// [`Rollout::new`](mozzi::simulation::Rollout::new)), or a state fails (the error carries the robot's index).
+    /// [`Rollout::new`](mozzi_sim::Rollout::new)), or a state fails (the error carries the robot's index).
     pub fn rollout(
         &self,
         [theta, dtheta, tau]: [&[f64]; 3],
@@ -159,7 +159,7 @@ impl Batch<f64> {
         for (what, table, width) in [("theta", theta, nq), ("dtheta", dtheta, n)] {
             if let Some(k) = table.iter().position(|x| !x.is_finite()) {
                 let (found, expected) = (table[k].to_string(), "finite numbers");
-                let source = mozzi::Error::BadArgument { what, found, expected };
+                let source = mozzi::Error::BadArgument { what, found, expected }.into();
                 return Err(Error::State { index: k / width, source });
             }
         }
@@ -210,7 +210,7 @@ impl Batch<f64> {
         let Some(Lost { robot, joint, step, value }) = lost else { return Ok(()) };
         let joint = self.model().velocity_names().nth(joint).unwrap_or_default().to_string();
         let (time, step_size) = (step as f64 * options.step, options.step);
-        let source = mozzi::Error::Diverged { quantity: "dtheta", joint, value, step, time, step_size };
+        let source = mozzi_sim::Error::Diverged { quantity: "dtheta", joint, value, step, time, step_size };
         Err(Error::State { index: robot, source })
     }
 }

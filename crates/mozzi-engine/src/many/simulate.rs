@@ -6,7 +6,7 @@ use crate::many::chunk::Table;
 use crate::many::request::Request;
 use crate::many::threads::Threads;
 use crate::{Batch, BatchEnvironment, Error, Number};
-use mozzi::simulation::{Closer, Method, Motion, Options, forward_dynamics_of};
+use mozzi_sim::{Closer, Method, Motion, Options, forward_dynamics_of};
 
 /// The number of robots that one thread moves together, so that their states and the method's stages stay in its cache.
 const TOGETHER: usize = 512;
@@ -15,9 +15,9 @@ impl<T: Number> Batch<T> {
     /// Replaces (θ, θ̇) (N, nq) and (N, n) of every robot by its state after `steps` steps of a method over `duration`
     /// seconds, under constant torques τ (N, n) and a constant environment: one interval of a controller. Robots are
     /// moved in pieces that fit the cache. The state of a robot with constraints is projected onto them after each
-    /// step. See [`mozzi::simulation`].
+    /// step. See [`mozzi_sim`].
     ///
-    /// Robots with dry friction are moved one by one, each as [`mozzi::Model::simulate`] moves it alone, by any method,
+    /// Robots with dry friction are moved one by one, each as [`mozzi_sim::simulate`] moves it alone, by any method,
     /// unless [`with_sticking(false)`](Batch::with_sticking) was set.
     ///
     /// # Errors
@@ -99,8 +99,14 @@ impl<T: Number> Batch<T> {
                     let (joint, value) =
                         (alone.model().velocity_names().nth(k % n).unwrap_or_default(), motion.dtheta[k].into());
                     let (joint, time) = (joint.to_string(), duration);
-                    let source =
-                        mozzi::Error::Diverged { quantity: "dtheta", joint, value, step: steps, time, step_size: h };
+                    let source = mozzi_sim::Error::Diverged {
+                        quantity: "dtheta",
+                        joint,
+                        value,
+                        step: steps,
+                        time,
+                        step_size: h,
+                    };
                     Error::State { index: first + k / n, source }
                 });
                 theta.copy_from_slice(&motion.theta);
@@ -114,7 +120,7 @@ impl<T: Number> Batch<T> {
     /// Checks that these states, row-major tables, satisfy the robot's constraints. See [`Closer::check_start`].
     ///
     /// # Errors
-    /// [`mozzi::Error::OpenStart`] for the first state that violates them.
+    /// [`mozzi_sim::Error::OpenStart`] for the first state that violates them.
     pub fn check_closed(&self, theta: &[T], dtheta: &[T]) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n().max(1));
         let pieces = theta.chunks(TOGETHER * nq.max(1)).zip(dtheta.chunks(TOGETHER * n));
@@ -131,8 +137,8 @@ impl<T: Number> Batch<T> {
     /// Projects states at time t, row-major tables, onto the robot's constraints. See [`Closer::close`].
     ///
     /// # Errors
-    /// [`mozzi::Error::Opened`] for the first state whose loops cannot be closed; a state that is not finite gives no
-    /// error.
+    /// [`mozzi_sim::Error::Opened`] for the first state whose loops cannot be closed; a state that is not finite gives
+    /// no error.
     pub fn close(&self, t: f64, theta: &mut [T], dtheta: &mut [T]) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n().max(1));
         let pieces = theta.chunks_mut(TOGETHER * nq.max(1)).zip(dtheta.chunks_mut(TOGETHER * n));

@@ -3,7 +3,7 @@
 
 use mozzi::model::description::{Joint, JointKind, Mimic};
 use mozzi::quantities::{LIST, Of, Query};
-use mozzi::testing::Random;
+use mozzi::random::Random;
 use mozzi::{Base, Description, Model, SE3, ScrewAxis, Solid, SpatialInertia, Task, TaskFrame, Twist, Vec3};
 
 pub use mozzi::testing::state;

@@ -15,7 +15,7 @@ use mozzi::quantities::*;
 use mozzi::testing::{closed, floating_mixed_tree, floating_tree, grippers, mixed_tree, state, tree, twist, wrench};
 use mozzi::{Dual, Environment, Error, FrameId, Freedom, Model, Scalar, Task, TaskFrame, Vec3, Wrench, fast};
 use mozzi_engine::{Arguments, Batch, BatchEnvironment, Compiled, Number, compile, record_quantity};
-use mozzi_oracle::{Given, SecondWay, second_way_of_f64};
+use mozzi_testing::{Given, SecondWay, second_way_of_f64};
 
 /// Fixed and floating, with and without mimic joints, with balls and free joints, one joint alone, none.
 fn robots() -> Vec<(&'static str, Model)> {

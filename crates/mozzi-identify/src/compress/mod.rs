@@ -51,7 +51,7 @@ pub fn stacked(columns: &Columns<'_>, states: usize) -> Result<DMatrix<f64>, Err
     let (mut A, mut b, mut all) = (vec![0.0; n * P], vec![0.0; n], Vec::with_capacity(states * n * P));
     for _ in 0..states {
         let mut theta = model.neutral_configuration();
-        mozzi::integrate(model, &mut theta, &random.vector(n, 3.0), 1.0);
+        mozzi::model::integrate(model, &mut theta, &random.vector(n, 3.0), 1.0);
         let (dtheta, ddtheta, tau) = (random.vector(n, 2.0), random.vector(n, 4.0), random.vector(n, 10.0));
         equations.at([&theta, &dtheta, &ddtheta, &tau], &mut A, &mut b);
         all.extend_from_slice(&A);

@@ -44,7 +44,8 @@ impl LeastSquares {
         }
         let most = evidence.rms().into_iter().fold(0.0, f64::max);
         if !(most > 0.0 && most.is_finite()) {
-            return Err(Error::NotExciting { reason: "all forces are 0".into() });
+            let reason = if most > 0.0 { "the forces are too large to be squared" } else { "all forces are 0" };
+            return Err(Error::NotExciting { reason: reason.into() });
         }
         let least = 1e-12 * most;
         // a force that is 0, such as a floating base's, begins with the weight of the largest

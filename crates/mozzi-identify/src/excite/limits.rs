@@ -42,7 +42,8 @@ const TO_SPEED: f64 = 0.3;
 
 impl MotionLimits {
     /// The robot's own: positions less 2 % at both ends, half a turn about 0 if there is no limit; velocities, 1 rad/s
-    /// or 0.2 m/s if there is none; accelerations that reach them in 0.3 s; effort.
+    /// or 0.2 m/s if there is none; accelerations that reach them in 0.3 s, less if the
+    /// file has lower limits; effort.
     pub fn of(model: &Model) -> Self {
         let mut limits = MotionLimits {
             position: Vec::new(),
@@ -62,7 +63,8 @@ impl MotionLimits {
             limits.position.push([low + margin, high - margin]);
             let velocity = joint.limits.velocity.filter(|v| *v > 0.0).unwrap_or(if slides { 0.2 } else { 1.0 });
             limits.velocity.push(velocity);
-            limits.acceleration.push(velocity / TO_SPEED);
+            let acceleration = joint.limits.acceleration.filter(|a| *a > 0.0);
+            limits.acceleration.push(acceleration.unwrap_or(f64::INFINITY).min(velocity / TO_SPEED));
             limits.torque.push(joint.limits.effort.filter(|t| *t > 0.0).unwrap_or(f64::INFINITY));
         }
         limits

@@ -97,12 +97,12 @@ impl<'c, 'm> Advisor<'c, 'm> {
         let mut random = Random(5);
         for _ in 0..POSTURES {
             let mut theta = model.neutral_configuration();
-            mozzi::integrate(model, &mut theta, &random.vector(n, 2.0), 1.0);
+            mozzi::model::integrate(model, &mut theta, &random.vector(n, 2.0), 1.0);
             let rest = at(&theta, &zeros, &zeros);
             for j in 0..n {
                 let unit: Vec<f64> = (0..n).map(|i| if i == j { 1.0 } else { 0.0 }).collect();
                 let mut turned = theta.clone();
-                mozzi::integrate(model, &mut turned, &unit, 1.0);
+                mozzi::model::integrate(model, &mut turned, &unit, 1.0);
                 let cases = [
                     (at(&theta, &zeros, &unit), &mut accelerated),
                     (at(&theta, &unit, &zeros), &mut turning),

@@ -63,8 +63,8 @@ impl Signals {
             if differentiates {
                 x = derivative(&x, rows.step);
             }
-            let end = x.len() - trim.max(3);
-            x[trim.max(3)..end].to_vec()
+            let ends = trim.max(3);
+            x.get(ends..x.len().saturating_sub(ends)).unwrap_or_default().to_vec()
         };
         let all = |table: &[f64], differentiates: bool| (0..n).map(|j| of(table, j, differentiates)).collect();
         Some(Signals {

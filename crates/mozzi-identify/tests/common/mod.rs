@@ -160,7 +160,7 @@ pub fn floating_motion(model: &Model, duration: f64, rate: f64, seed: u64) -> Lo
         log.theta.extend(&theta);
         ddtheta.extend(sines.iter().map(|[a, w, p]| -a * w * w * (w * t + p).sin()));
         let half: Vec<f64> = sines.iter().map(|[a, w, p]| a * w * (w * (t + 0.5 / rate) + p).cos()).collect();
-        mozzi::integrate(model, &mut theta, &half, 1.0 / rate);
+        mozzi::model::integrate(model, &mut theta, &half, 1.0 / rate);
         dtheta.extend(velocity);
     }
     (log.dtheta, log.ddtheta) = (Some(dtheta), Some(ddtheta));

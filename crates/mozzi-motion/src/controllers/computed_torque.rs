@@ -5,8 +5,8 @@ use crate::Error;
 use crate::error::check_driven;
 use crate::trajectories::Reference;
 use mozzi::quantities::{InverseDynamics, Query};
-use mozzi::simulation::Input;
 use mozzi::{Model, fast};
+use mozzi_sim::Input;
 
 /// τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇), by one inverse dynamics; K_p in 1/s², K_d in 1/s. If the model
 /// is exact, ë + K_d ė + K_p e = 0.
@@ -42,7 +42,7 @@ impl<'m, R: Reference> ComputedTorque<'m, R> {
 }
 
 impl<R: Reference> Input for ComputedTorque<'_, R> {
-    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         let desired = self.reference.at(t);
         let [e, de] = errors(self.model, &desired, theta, dtheta)?;
         let mut ddtheta = desired.ddtheta;

@@ -1,5 +1,5 @@
 //! Controllers: motors that follow a [`Reference`](crate::trajectories::Reference) (Modern Robotics, chapter 11). Each
-//! is an [`Input`](mozzi::simulation::Input) of a simulation, and has a model of its own, which may differ from the
+//! is an [`Input`](mozzi_sim::Input) of a simulation, and has a model of its own, which may differ from the
 //! simulated robot.
 //!
 //! | | τ | the error if the model is exact |
@@ -31,7 +31,8 @@ pub use tracking::{Tracking, TrackingError, tracking_error, tracking_error_of_ro
 use crate::Error;
 use crate::error::check;
 use crate::trajectories::Desired;
-use mozzi::{Model, difference};
+use mozzi::Model;
+use mozzi::model::difference;
 
 /// Gains of each of the n velocities; those of a floating base, which has no motors, are not used.
 #[derive(Clone, Debug, PartialEq)]

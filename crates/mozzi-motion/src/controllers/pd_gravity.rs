@@ -3,8 +3,8 @@
 use super::{Gains, errors};
 use crate::Error;
 use crate::trajectories::Reference;
-use mozzi::simulation::{GravityCompensation, Input};
 use mozzi::{Freedom, Model};
+use mozzi_sim::{GravityCompensation, Input};
 
 /// τ = g(θ) + k(θ − θ₀) + K_p e + K_d ė: compensates gravity and the robot's own springs; K_p in N m/rad or N/m. It
 /// lags behind a moving reference, because it does not use accelerations. A floating base and a free joint have no
@@ -29,7 +29,7 @@ impl<'m, R: Reference> PdGravity<'m, R> {
 }
 
 impl<R: Reference> Input for PdGravity<'_, R> {
-    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         let [e, de] = errors(self.model, &self.reference.at(t), theta, dtheta)?;
         self.gravity.torque(t, theta, dtheta, tau)?;
         let is_free =

@@ -1,8 +1,8 @@
 //! Motor saturation at the effort limits.
 
 use crate::Policy;
-use mozzi::simulation::Input;
-use mozzi::{Error, FrameId, Model, Wrench};
+use mozzi::{FrameId, Model, Wrench};
+use mozzi_sim::{Error, Input};
 
 /// A motor whose controller demanded more than its effort limit.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,8 @@ impl<I: Input> Input for Saturated<I> {
     fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
         self.own.fill(0.0);
         if tau.len() != self.own.len() {
-            return Err(Error::WrongLength { what: "tau", found: tau.len(), expected: self.own.len() });
+            let (found, expected) = (tau.len(), self.own.len());
+            return Err(mozzi::Error::WrongLength { what: "tau", found, expected }.into());
         }
         self.input.torque(t, theta, dtheta, &mut self.own)?;
         for (j, asked) in self.own.iter_mut().enumerate() {

@@ -9,8 +9,8 @@ use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, ZeroConeT,
 };
 use mozzi::nalgebra::DMatrix;
-use mozzi::simulation::{ContactPoint, Input};
 use mozzi::{Environment, FrameId, Model, SE3, Vec3, Wrench};
+use mozzi_sim::{ContactPoint, Input};
 
 /// Weight of (contact force)² next to (error of an acceleration)².
 const FORCES: f64 = 1e-9;
@@ -67,7 +67,7 @@ impl<'m, R: Reference> Standing<'m, R> {
 }
 
 impl<R: Reference> Input for Standing<'_, R> {
-    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         let (model, n, k) = (self.model, self.model.n(), self.feet.len());
         let desired = self.reference.at(t);
         let [e, de] = errors(model, &desired, theta, dtheta)?;

@@ -4,9 +4,10 @@ use super::Gains;
 use crate::Error;
 use crate::error::{check, check_driven, check_open};
 use crate::trajectories::Reference;
+use mozzi::kinematics::forward_kinematics;
 use mozzi::nalgebra::{DVector, Vector6};
-use mozzi::simulation::Input;
-use mozzi::{FrameId, Model, SE3, Task, TaskFrame, Twist, forward_kinematics};
+use mozzi::{FrameId, Model, SE3, Task, TaskFrame, Twist};
+use mozzi_sim::Input;
 
 /// The control law for the frame's error; gains are diagonal in the frame's own coordinates, angular first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +98,7 @@ fn six(V: Twist) -> Vector6<f64> {
 }
 
 impl<R: Reference> Input for TaskSpace<'_, R> {
-    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         let (model, desired) = (self.model, self.reference.at(t));
         let [e, de] = super::errors(model, &desired, theta, dtheta)?;
         let FrameError { X, V, a } = self.frame_error(&desired, theta, dtheta)?;

@@ -3,9 +3,10 @@
 use super::*;
 use crate::Policy;
 use crate::trajectories::{Hold, Line, Profile, Reference, Timed};
-use mozzi::simulation::{Input, Options, applied};
+use mozzi::model::integrate;
 use mozzi::testing::{state, tree, wrench};
-use mozzi::{SE3, SpatialInertia, Task, TaskFrame, Twist, Vec3, Wrench, integrate};
+use mozzi::{SE3, SpatialInertia, Task, TaskFrame, Twist, Vec3, Wrench};
+use mozzi_sim::{Input, Options, applied};
 
 fn robot(name: &str) -> Model {
     mozzi_urdf::open(name).expect("embedded").build().expect("sound")
@@ -52,7 +53,7 @@ fn computed_torque_makes_the_error_linear() {
     let motion = Timed::new(Line::new(&ur5, &from, &to).expect("fine"), Profile::quintic(0.6).expect("fine"));
     let start: Vec<f64> = from.iter().enumerate().map(|(j, q)| q + 0.1 * j as f64 - 0.2).collect();
     let control = ComputedTorque::new(&ur5, &motion, Gains::critical(6, omega)).expect("fine");
-    let followed = ur5.simulate(&start, &[0.3; 6], control, &Options::new(0.6, 300)).expect("a motion");
+    let followed = mozzi_sim::simulate(&ur5, &start, &[0.3; 6], control, &Options::new(0.6, 300)).expect("a motion");
     for row in followed.samples().step_by(50) {
         for j in 0..6 {
             let (e0, de0) = (from[j] - start[j], -0.3);
@@ -73,7 +74,8 @@ fn pd_with_gravity_brings_the_robot_to_rest_at_its_goal() {
     let gains =
         Gains { p: vec![300.0, 300.0, 200.0, 200.0, 40.0, 40.0, 20.0], d: vec![60.0, 60.0, 40.0, 40.0, 6.0, 6.0, 2.0] };
     let mut control = PdGravity::new(&panda, Hold::new(&goal, 7), gains.clone()).expect("fine");
-    let settled = panda.simulate(&start, &[0.0; 7], &mut control, &Options::new(2.5, 2500)).expect("a motion");
+    let settled =
+        mozzi_sim::simulate(&panda, &start, &[0.0; 7], &mut control, &Options::new(2.5, 2500)).expect("a motion");
     let stored = |k: usize| {
         let row = settled.sample(k);
         let spring: f64 = (0..7).map(|j| 0.5 * gains.p[j] * (goal[j] - row.theta[j]).powi(2)).sum();
@@ -86,7 +88,8 @@ fn pd_with_gravity_brings_the_robot_to_rest_at_its_goal() {
     // a payload that the model does not have: the arm hangs where the springs carry it, K_p e = the payload's torques
     let hand = panda.frame("panda_hand").expect("there");
     let loaded = panda.with_payload(hand, SpatialInertia::point_mass(2.0, Vec3([0.0, 0.0, 0.1]))).expect("sound");
-    let sagged = loaded.simulate(&goal, &[0.0; 7], &mut control, &Options::new(6.0, 6000)).expect("a motion");
+    let sagged =
+        mozzi_sim::simulate(&loaded, &goal, &[0.0; 7], &mut control, &Options::new(6.0, 6000)).expect("a motion");
     let theta = sagged.last().theta;
     let missing = loaded.gravity_forces(theta).expect("lengths") - panda.gravity_forces(theta).expect("lengths");
     for j in 0..7 {
@@ -170,9 +173,14 @@ fn an_impedance_yields_as_a_spring() {
     };
     let control = TaskSpace::new(&model, Hold::new(&posture, 7), frame, law, Gains::critical(7, 10.0)).expect("fine");
     let push = Wrench { m: Vec3([1.0, -2.0, 0.5]), f: Vec3([10.0, 6.0, -12.0]) };
-    let held = model
-        .simulate(&posture, &[0.0; 7], (control, applied(frame, move |_, _, _| push)), &Options::new(3.0, 1500))
-        .expect("a motion");
+    let held = mozzi_sim::simulate(
+        &model,
+        &posture,
+        &[0.0; 7],
+        (control, applied(frame, move |_, _, _| push)),
+        &Options::new(3.0, 1500),
+    )
+    .expect("a motion");
     let T = |theta: &[f64]| model.forward_kinematics(theta, frame).expect("lengths");
     let X = (T(held.last().theta).inverse() * T(&posture)).log();
     let (X, F) = (X.to_array(), [push.m.0, push.f.0].concat());
@@ -185,11 +193,8 @@ fn an_impedance_yields_as_a_spring() {
 #[test]
 fn motors_have_limits() {
     let ur5 = robot("ur5"); // 150, 150, 150, 28, 28, 28 N m
-    let ask = || {
-        mozzi::simulation::torque(|t, _, _, tau| {
-            (0..6).for_each(|j| tau[j] = if j == 1 { 400.0 * t } else { -20.0 * t })
-        })
-    };
+    let ask =
+        || mozzi_sim::torque(|t, _, _, tau| (0..6).for_each(|j| tau[j] = if j == 1 { 400.0 * t } else { -20.0 * t }));
     for (policy, given, overloads) in
         [(Policy::Ignore, 800.0, 0), (Policy::Report, 800.0, 4), (Policy::Respect, 150.0, 4)]
     {

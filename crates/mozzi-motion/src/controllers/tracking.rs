@@ -1,8 +1,10 @@
 //! How well a motion followed its reference.
 
 use crate::trajectories::Reference;
-use mozzi::simulation::{Recorder, Sample};
-use mozzi::{Model, Trajectory, difference};
+use mozzi::Model;
+use mozzi::model::difference;
+use mozzi_sim::Trajectory;
+use mozzi_sim::{Recorder, Sample};
 use std::ops::ControlFlow;
 
 /// The error e = θ_d ⊖ θ of each joint over a motion; a floating base follows nothing.

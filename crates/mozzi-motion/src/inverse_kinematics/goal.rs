@@ -65,12 +65,23 @@ pub struct Residual {
     pub distance: Option<f64>,
 }
 
+/// "1.51", "0.00151", "1.51e-6".
+fn three_digits(x: f64) -> String {
+    if (1e-3..1e3).contains(&x) {
+        let places = (2.0 - x.log10().floor()).max(0.0);
+        format!("{x:.*}", places as usize)
+    } else {
+        format!("{x:.2e}")
+    }
+}
+
 impl fmt::Display for Residual {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.angle, self.distance) {
-            (Some(angle), Some(distance)) => write!(f, "{angle:.2e} rad and {distance:.2e} m"),
-            (Some(angle), None) => write!(f, "{angle:.2e} rad"),
-            (None, Some(distance)) => write!(f, "{distance:.2e} m"),
+        let [angle, distance] = [self.angle, self.distance].map(|x| x.map(three_digits));
+        match (angle, distance) {
+            (Some(angle), Some(distance)) => write!(f, "{angle} rad and {distance} m"),
+            (Some(angle), None) => write!(f, "{angle} rad"),
+            (None, Some(distance)) => write!(f, "{distance} m"),
             (None, None) => Ok(()),
         }
     }

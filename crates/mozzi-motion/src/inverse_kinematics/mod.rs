@@ -9,6 +9,7 @@
 mod bounds;
 mod goal;
 mod options;
+mod reach;
 mod secondary;
 mod step;
 
@@ -20,10 +21,12 @@ pub use step::Method;
 use crate::Error;
 use crate::error::{check, check_open};
 use bounds::Within;
+use mozzi::kinematics::{body_jacobian, forward_kinematics};
 use mozzi::model::Bounds;
+use mozzi::model::integrate;
 use mozzi::nalgebra::Vector6;
-use mozzi::testing::Random;
-use mozzi::{FrameId, Model, Twist, body_jacobian, forward_kinematics, integrate};
+use mozzi::random::Random;
+use mozzi::{FrameId, Model, Twist};
 use step::Step;
 
 /// A start is given up when this many iterations have not halved its error.
@@ -121,8 +124,8 @@ impl<'m> InverseKinematics<'m> {
     /// Positions that reach the goal, from a guess and, if that fails, from random ones. An iteration costs O(n).
     ///
     /// # Errors
-    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for an invalid guess or goal, or a robot with
-    /// constraints.
+    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for an invalid guess or goal, or
+    /// a robot with constraints.
     pub fn solve(&mut self, goal: Goal, guess: &[f64]) -> Result<Solution, Error> {
         self.solve_with(goal, guess, &Secondary::None)
     }

@@ -1,6 +1,7 @@
 //! Secondary goals of a redundant robot.
 
-use mozzi::{Model, difference};
+use mozzi::Model;
+use mozzi::model::difference;
 
 /// The function to minimize among all positions that reach the goal.
 #[derive(Default)]

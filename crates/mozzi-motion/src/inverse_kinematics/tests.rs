@@ -2,8 +2,9 @@
 
 use super::*;
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::difference;
 use mozzi::testing::{floating_tree, state, tree, twist};
-use mozzi::{Description, SE3, SpatialInertia, Vec3, difference};
+use mozzi::{Description, SE3, SpatialInertia, Vec3};
 
 fn robot(name: &str, frame: &str) -> (Model, FrameId) {
     let model = mozzi_urdf::open(name).expect("embedded").build().expect("sound");

@@ -4,7 +4,8 @@ use super::path::Path;
 use super::spline::{Ends, Spline};
 use crate::inverse_kinematics::{Goal, InverseKinematics, Options};
 use crate::{Error, error};
-use mozzi::{FrameId, Model, SE3, SO3, Twist, Vec3, forward_kinematics};
+use mozzi::kinematics::forward_kinematics;
+use mozzi::{FrameId, Model, SE3, SO3, Twist, Vec3};
 
 /// A frame's path from T₀ to T₁.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,5 +95,9 @@ impl Cartesian {
 impl Path for Cartesian {
     fn at(&self, s: f64) -> super::Point {
         self.spline.at(s)
+    }
+
+    fn knots(&self) -> Vec<f64> {
+        self.spline.knots()
     }
 }

@@ -3,7 +3,8 @@
 use super::path::Path;
 use crate::Error;
 use crate::error::check;
-use mozzi::{Environment, Model, Workspace, inverse_dynamics, spring_forces};
+use mozzi::dynamics::{inverse_dynamics, spring_forces};
+use mozzi::{Environment, Model, Workspace};
 
 /// The coefficients of each of the n velocities at one s.
 #[derive(Clone, Debug)]
@@ -56,7 +57,7 @@ pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand>
         for j in 0..n {
             a[j] -= springs[j];
             b[j] -= springs[j];
-            let f = mozzi::joint_friction(model, j, point.slope[j]); // at ṡ = 1
+            let f = mozzi::dynamics::joint_friction(model, j, point.slope[j]); // at ṡ = 1
             b[j] -= f;
             c[j] += f - d[j];
         }
@@ -67,5 +68,7 @@ pub(super) fn demands(model: &Model, path: &impl Path, s: &[f64]) -> Vec<Demand>
 
 /// d of each velocity: the increase of friction from 1 to 2 rad/s.
 fn damping(model: &Model) -> Vec<f64> {
-    (0..model.n()).map(|j| mozzi::joint_friction(model, j, 2.0) - mozzi::joint_friction(model, j, 1.0)).collect()
+    (0..model.n())
+        .map(|j| mozzi::dynamics::joint_friction(model, j, 2.0) - mozzi::dynamics::joint_friction(model, j, 1.0))
+        .collect()
 }

@@ -22,12 +22,13 @@ impl Limits {
         Limits { velocity: none.clone(), acceleration: none.clone(), torque: none }
     }
 
-    /// The velocity and effort limits of the robot's description; a ball's apply to each of its three velocities. The
-    /// description has no acceleration limits.
+    /// The limits of velocity, acceleration and effort of the robot's description; a ball's apply to each of its three
+    /// velocities. Of the formats, URDF 1.2 and JSON have limits of acceleration.
     pub fn of(model: &Model) -> Self {
         let mut limits = Limits::none(model);
         for (place, joint) in model.places().iter().zip(model.joints()) {
             limits.velocity[place.velocities()].fill(joint.limits.velocity.unwrap_or(f64::INFINITY));
+            limits.acceleration[place.velocities()].fill(joint.limits.acceleration.unwrap_or(f64::INFINITY));
             limits.torque[place.velocities()].fill(joint.limits.effort.unwrap_or(f64::INFINITY));
         }
         limits

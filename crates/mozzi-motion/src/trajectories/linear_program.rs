@@ -71,7 +71,7 @@ fn on_line(q: [f64; 2], bounds: [[f64; 2]; 2], line: &HalfPlane, planes: &[HalfP
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mozzi::testing::Random;
+    use mozzi::random::Random;
 
     /// The best of all corners, the intersections of two lines.
     fn by_corners(q: [f64; 2], bounds: [[f64; 2]; 2], planes: &[HalfPlane]) -> Option<[f64; 2]> {

@@ -3,8 +3,9 @@
 use super::tests::{assert_rates, used};
 use super::*;
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::difference;
 use mozzi::testing::{Random, floating_mixed_tree, mixed_tree, state};
-use mozzi::{Description, Freedom, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3, difference};
+use mozzi::{Description, Freedom, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 
 /// ‖θ₁ ⊖ θ₀‖.
 fn apart(model: &Model, theta0: &[f64], theta1: &[f64]) -> f64 {

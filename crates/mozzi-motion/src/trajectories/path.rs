@@ -1,7 +1,8 @@
 //! Paths without timing: θ(s) for s from 0 to 1.
 
 use crate::Error;
-use mozzi::{Model, difference, integrate};
+use mozzi::Model;
+use mozzi::model::{difference, integrate};
 
 /// A point of a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,17 +19,28 @@ pub struct Point {
 pub trait Path {
     /// θ, θ′ and θ″ at s, which is between 0 and 1.
     fn at(&self, s: f64) -> Point;
+
+    /// The s at which θ″ or its rate jumps: extreme accelerations may be there. By default none.
+    fn knots(&self) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 impl<P: Path + ?Sized> Path for &P {
     fn at(&self, s: f64) -> Point {
         (**self).at(s)
     }
+    fn knots(&self) -> Vec<f64> {
+        (**self).knots()
+    }
 }
 
 impl<P: Path + ?Sized> Path for Box<P> {
     fn at(&self, s: f64) -> Point {
         (**self).at(s)
+    }
+    fn knots(&self) -> Vec<f64> {
+        (**self).knots()
     }
 }
 

@@ -126,6 +126,24 @@ impl Profile {
         self.times[self.times.len() - 1]
     }
 
+    /// The times at which s̈ jumps, without those of the ends.
+    pub(super) fn corners(&self) -> &[f64] {
+        &self.times[1..self.times.len() - 1]
+    }
+
+    /// The time at which s is reached, to rounding: s(t) does not decrease, so halving finds it.
+    pub(super) fn time_of(&self, s: f64) -> f64 {
+        let (mut low, mut high) = (0.0, self.duration());
+        while low < high {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            (low, high) = if self.at(middle).s < s { (middle, high) } else { (low, middle) };
+        }
+        high
+    }
+
     /// s, ṡ and s̈ at a time.
     pub fn at(&self, t: f64) -> Progress {
         if t < 0.0 {

@@ -4,7 +4,8 @@ use super::chart::{State, between};
 use super::path::{Path, Point};
 use crate::Error;
 use crate::error::check;
-use mozzi::{ConfigurationSpace, Model, difference};
+use mozzi::model::difference;
+use mozzi::{ConfigurationSpace, Model};
 
 /// What a spline does at its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +108,10 @@ impl Path for Spline {
             second: Some(second),
         });
         between(&self.space, end - start, s - start, ends)
+    }
+
+    fn knots(&self) -> Vec<f64> {
+        self.s.clone()
     }
 }
 

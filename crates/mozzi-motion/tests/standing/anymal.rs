@@ -1,7 +1,7 @@
 //! ANYmal, its feet, and motors with springs and dampers.
 
-use mozzi::simulation::{ContactPoint, Contacts, Input, Plane};
-use mozzi::{Error, Model, Vec3};
+use mozzi::{Model, Vec3};
+use mozzi_sim::{ContactPoint, Contacts, Input, Plane};
 
 pub const FEET: [&str; 4] = ["LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"];
 pub const POSE: [f64; 12] = [0.0, 0.7, -1.0, 0.0, 0.7, -1.0, 0.0, -0.7, 1.0, 0.0, -0.7, 1.0];
@@ -40,7 +40,7 @@ pub struct Springs<F> {
 }
 
 impl<F: Fn(f64) -> [f64; 12]> Input for Springs<F> {
-    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
+    fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         let pose = (self.pose)(t);
         for j in 0..12 {
             tau[6 + j] += self.k * (pose[j] - theta[7 + j]) - self.d * dtheta[6 + j];

@@ -1,8 +1,8 @@
 //! ANYmal drops, stands and squats.
 
 use crate::anymal::{FEET, POSE, Springs, anymal, feet, mass, start};
-use mozzi::simulation::{Method, Options, Run, Simulation};
 use mozzi::{Model, Vec3};
+use mozzi_sim::{Method, Options, Run, Simulation};
 
 fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, x| most.max(x.abs()))

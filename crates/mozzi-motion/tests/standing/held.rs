@@ -1,10 +1,10 @@
 //! The controller that stands on given feet.
 
 use crate::anymal::{anymal, feet, mass, start};
-use mozzi::simulation::{Contacts, Input, Options, Plane, Simulation, applied};
 use mozzi::{SE3, Wrench};
 use mozzi_motion::controllers::{Gains, Standing};
 use mozzi_motion::trajectories::Hold;
+use mozzi_sim::{Contacts, Input, Options, Plane, Simulation, applied};
 
 #[test]
 fn it_stands_within_its_cones_and_is_pushed() {

@@ -48,7 +48,7 @@ impl PyModel {
         let name = &model.description().name;
         let text = json::to_value(model.description()).to_string();
         let file = format!("{name}.json");
-        let page = play_html(&Played { name, file: &file, text: &text, model, drawing: &drawing });
+        let page = play_html(&Played { name, file: &file, text: &text, model, drawing: &drawing, theta: None });
         py.import("mozzi._notebook")?.getattr("Page")?.call1((page,))
     }
 }

@@ -44,7 +44,7 @@ impl PyModel {
         let mut theta = list("theta", theta, &[model.nq()])?;
         let dtheta = list("dtheta", dtheta, &[model.n()])?;
         model.check_configuration(&theta).map_err(of_model)?;
-        mozzi::kinematics::integrate(model, &mut theta, &dtheta, h);
+        mozzi::model::integrate(model, &mut theta, &dtheta, h);
         array(py, &[theta.len()], theta)
     }
 
@@ -80,7 +80,7 @@ impl PyModel {
         let theta1 = list("theta1", theta1, &[model.nq()])?;
         [&theta0, &theta1].into_iter().try_for_each(|theta| model.check_configuration(theta)).map_err(of_model)?;
         let mut difference = vec![0.0; model.n()];
-        mozzi::kinematics::difference(model, &theta0, &theta1, &mut difference);
+        mozzi::model::difference(model, &theta0, &theta1, &mut difference);
         array(py, &[difference.len()], difference)
     }
 }

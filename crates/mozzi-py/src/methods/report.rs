@@ -5,9 +5,9 @@ use crate::failure::{LoadWarning, of_loader};
 use crate::model::PyModel;
 use crate::results::named;
 use crate::simulate::contacts::Fixed;
-use mozzi::Trajectory;
-use mozzi::simulation::{ContactChange, ContactEvent, Energy, Sample};
 use mozzi_report::{Drawing, Meshes, Motion, Touches};
+use mozzi_sim::Trajectory;
+use mozzi_sim::{ContactChange, ContactEvent, Energy, Sample};
 use mozzi_urdf::XacroArguments;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -182,7 +182,7 @@ impl PyModel {
         let motion = motion.map(|motion| motion.thinned(rows.unwrap_or(usize::MAX)));
         let page = mozzi_report::html(model, &drawing, motion.as_ref());
         let page = page.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        mozzi_text::whole_file::save(&path, page.as_bytes())
+        mozzi_report::whole_file::save(&path, page.as_bytes())
             .map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))?;
         let rows = motion.map_or(0, |motion| motion.t.len());
         let numbers = [rows, all_rows, page.len()].map(|x| x.into_pyobject(py).map(Bound::into_any));

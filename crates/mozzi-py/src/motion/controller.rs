@@ -7,10 +7,10 @@ use crate::array::{shown, wrong_shape};
 use crate::failure::{of_motion, of_state};
 use crate::model::PyModel;
 use crate::numpy::Fresh;
-use mozzi::simulation::Input;
 use mozzi::{FrameId, Model};
 use mozzi_motion::Error;
 use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
+use mozzi_sim::Input;
 use pyo3::prelude::*;
 
 /// A controller: the motors' τ that make a robot follow a reference (Modern Robotics, chapter 11): a `PdGravity`, a

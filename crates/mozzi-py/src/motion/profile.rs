@@ -95,6 +95,6 @@ impl PyProfile {
     }
 
     fn __repr__(&self) -> String {
-        format!("<mozzi.trajectories.Profile of {} s>", mozzi_text::scalar(self.0.duration()))
+        format!("<mozzi.trajectories.Profile of {} s>", mozzi_report::text::scalar(self.0.duration()))
     }
 }

@@ -7,9 +7,9 @@ use crate::failure::of_state;
 use crate::model::PyModel;
 use crate::numpy::Fresh;
 use crate::results::named;
-use mozzi::simulation::Input;
 use mozzi_motion::Policy;
 use mozzi_motion::controllers::{Overload, Saturated};
+use mozzi_sim::Input;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -48,7 +48,7 @@ pub struct PySaturated {
 struct Asked(Vec<f64>);
 
 impl Input for Asked {
-    fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+    fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         tau.iter_mut().zip(&self.0).for_each(|(tau, x)| *tau += x);
         Ok(())
     }

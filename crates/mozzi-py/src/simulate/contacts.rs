@@ -2,8 +2,8 @@
 
 use crate::arguments::Given;
 use crate::failure::of_model;
-use mozzi::simulation::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use mozzi::{Model, SE3, Vec3};
+use mozzi_sim::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};

@@ -9,7 +9,7 @@ use crate::failure::{of_batch, of_model};
 use crate::model::{PyModel, array};
 use crate::results::named;
 use crate::threads::Threads;
-use mozzi::simulation::{GravityCompensation, Input, OneSidedAccount, Options, Run, Simulation, Zero};
+use mozzi_sim::{GravityCompensation, Input, OneSidedAccount, Options, Run, Simulation, Zero};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
@@ -107,7 +107,7 @@ fn trajectories<'py>(
         runs.iter().enumerate().for_each(|(k, run)| table.write_robot(k, &numbers(run)));
         Ok(table.into_array())
     };
-    let energies = |part: fn(&mozzi::simulation::Energy) -> f64| -> PyResult<Bound<'py, PyAny>> {
+    let energies = |part: fn(&mozzi_sim::Energy) -> f64| -> PyResult<Bound<'py, PyAny>> {
         let all = runs.iter().flat_map(|run| run.motion.energy.iter().map(part));
         array(py, &[leading, &[rows]].concat(), all.collect::<Vec<_>>())
     };

@@ -10,9 +10,10 @@ use crate::results::named;
 use crate::signature::{INPUTS, Slot};
 use crate::threads::Threads;
 use mozzi::quantities::{KineticEnergy, PotentialEnergy, Query};
-use mozzi::simulation::{GravityCompensation, Input, LARGEST, Motion, Options, forward_dynamics_of};
-use mozzi::{Environment, Error, Model};
+use mozzi::{Environment, Model};
 use mozzi_engine::{Batch, BatchEnvironment};
+use mozzi_sim::Error;
+use mozzi_sim::{GravityCompensation, Input, LARGEST, Motion, Options, forward_dynamics_of};
 use pyo3::prelude::*;
 
 /// Steps of all robots together between two checks for an interrupt from Python: a fraction of a second. The number is
@@ -87,7 +88,7 @@ impl Robots<'_> {
         let Some(k) = numbers.iter().position(|x| !x.is_finite()) else { return Ok(()) };
         let width = if what == "theta" { self.model.nq() } else { self.model.n() };
         let found = format!("{}{}", numbers[k], at(k % width));
-        Err(self.wrong(k / width, Error::BadArgument { what, found, expected: "a finite number" }))
+        Err(self.wrong(k / width, mozzi::Error::BadArgument { what, found, expected: "a finite number" }.into()))
     }
 
     /// Checks that every state is finite. `place` maps a state's index to its robot and its step.

@@ -12,7 +12,7 @@ use crate::array::{Numbers, common_leading};
 use crate::model::PyModel;
 use crate::threads::Threads;
 use mozzi::Vec3;
-use mozzi::simulation::{Friction, Method, Options, Policy};
+use mozzi_sim::{Friction, Method, Options, Policy};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;

@@ -8,8 +8,8 @@ use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::results::named;
 use crate::robot::Robot;
-use mozzi::Error;
-use mozzi::simulation::{
+use mozzi_sim::Error;
+use mozzi_sim::{
     ContactEvent, Contacts, Energy, GravityCompensation, Input, OneSidedAccount, Options, Run, Simulation, Zero,
 };
 use pyo3::prelude::*;
@@ -49,7 +49,8 @@ impl Input for Function<'_, '_> {
     fn torque(&mut self, t: f64, theta: &[f64], dtheta: &[f64], tau: &mut [f64]) -> Result<(), Error> {
         self.call(t, theta, dtheta, tau).map_err(|error| {
             *self.raised.borrow_mut() = Some(error);
-            Error::BadArgument { what: "the torque's function", found: "an exception".into(), expected: "torques" }
+            let (what, expected) = ("the torque's function", "torques");
+            mozzi::Error::BadArgument { what, found: "an exception".into(), expected }.into()
         })
     }
 }

@@ -4,7 +4,7 @@ use crate::failure::of_model;
 use crate::model::array;
 use crate::results::named;
 use mozzi::Model;
-use mozzi::simulation::{Event, Occurrence, Stopped};
+use mozzi_sim::{Event, Occurrence, Stopped};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;

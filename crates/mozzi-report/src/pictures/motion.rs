@@ -180,12 +180,13 @@ pub fn phase(model: &Model, motion: &Motion) -> Result<Figure, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mozzi::simulation::{Options, Zero};
+    use mozzi_sim::{Options, Zero};
 
     fn fall(name: &str) -> (Model, Motion) {
         let model = mozzi_urdf::open(name).and_then(mozzi_urdf::Loaded::build).expect("embedded");
         let theta = model.neutral_configuration::<f64>();
-        let fall = model.simulate(&theta, &vec![0.1; model.n()], Zero, &Options::new(0.05, 10)).expect("a motion");
+        let fall = mozzi_sim::simulate(&model, &theta, &vec![0.1; model.n()], Zero, &Options::new(0.05, 10))
+            .expect("a motion");
         (model, Motion::simulated("let go", &fall))
     }
 

@@ -3,30 +3,82 @@
 use super::entry::{Entry, known, motors, required};
 use super::file::{At, Contents};
 use super::yaml::Wrong;
-use mozzi::Description;
-use mozzi::model::description::{Anchor, Closure, Constraint};
+use mozzi::model::description::{Anchor, Closure, Constraint, Joint, JointKind};
+use mozzi::{Description, Vec3};
 
 pub fn contents(at: &At, robot: &Description) -> Result<Contents, Wrong> {
-    known(at, &["closed_loop", "type", "name_mot"])?;
-    let (pairs, kinds) = (required(at, "closed_loop")?.list()?, required(at, "type")?);
-    let each = kinds.list()?;
-    if each.len() != pairs.len() {
+    known(at, &["closed_loop", "type", "name_mot", "joint_name", "joint_type"])?;
+    let pairs = required(at, "closed_loop")?.list()?;
+    let kinds = at.get("type");
+    // without types, the frames coincide
+    let each = if kinds.is_null() { Vec::new() } else { kinds.list()? };
+    if each.len() != pairs.len() && !kinds.is_null() {
         return kinds.wrong(&format!("one type for each of the {} pairs of closed_loop", pairs.len()));
     }
     let mut constraints = Vec::new();
-    for (pair, kind) in pairs.iter().zip(&each) {
+    for (k, pair) in pairs.iter().enumerate() {
         let ends = pair.list()?;
         let [a, b] = ends.as_slice() else { return pair.wrong("two frames") };
         let name = format!("{}-{}", a.text()?, b.text()?);
-        let closure = match kind.text()?.as_str() {
-            "6d" => Closure::Weld,
-            "3d" => Closure::Point,
-            _ => return kind.wrong("`6d`, frames that coincide, or `3d`, points that do"),
+        let kind = each.get(k).map(Entry::text).transpose()?.map(|kind| kind.to_lowercase());
+        let closure = match (kind.as_deref(), each.get(k)) {
+            (None | Some("6d"), _) => Closure::Weld,
+            (Some("3d"), _) => Closure::Point,
+            (_, wrong) => return wrong.unwrap_or(&kinds).wrong("`6d`, frames that coincide, or `3d`, points that do"),
         };
         constraints.push((Constraint::new(name, anchor(a, robot)?, anchor(b, robot)?, closure), pair.place));
     }
     let driven = at.get("name_mot");
-    Ok(Contents { constraints, motors: motors(&driven)?, place_of_motors: driven.place })
+    Ok(Contents { constraints, motors: driven_joints(&driven, robot)?, place_of_motors: driven.place })
+}
+
+/// Joints that become others, as `joint_name` and `joint_type` of the same length say.
+pub fn retyped(at: &At, robot: &Description) -> Result<Vec<(usize, JointKind)>, Wrong> {
+    let list = |key| if at.get(key).is_null() { Ok(Vec::new()) } else { at.get(key).list() };
+    let (names, types) = (list("joint_name")?, list("joint_type")?);
+    if names.len() != types.len() {
+        return at.get("joint_type").wrong(&format!("one type for each of the {} joints of joint_name", names.len()));
+    }
+    let each = names.iter().zip(&types).map(|(name, kind)| {
+        let joint = name.text()?;
+        let Some(index) = robot.joints.iter().position(|known| known.name == joint) else {
+            return name.error(format!("{} is `{joint}`, expected a joint of the robot", name.name()));
+        };
+        match kind.text()?.to_uppercase().as_str() {
+            "SPHERICAL" => Ok((index, JointKind::Ball(Vec3::zero()))),
+            "FIXED" => Ok((index, JointKind::Fixed)),
+            "REVOLUTE" | "PRISMATIC" | "CONTINUOUS" => Ok((index, robot.joints[index].kind)),
+            _ => kind.wrong("SPHERICAL, FIXED, or REVOLUTE, PRISMATIC and CONTINUOUS as in the robot's file"),
+        }
+    });
+    each.collect()
+}
+
+/// The joints with motors: a list of names, or a part that their names have. A motor of a mimic joint drives the joint
+/// that it follows.
+fn driven_joints(at: &At, robot: &Description) -> Result<Option<Vec<String>>, Wrong> {
+    let named = match at.text() {
+        Ok(part) => {
+            let moves = |joint: &&Joint| joint.kind != JointKind::Fixed && joint.mimic.is_none();
+            let all = robot.joints.iter().filter(moves).map(|joint| joint.name.clone());
+            Some(all.filter(|name| name.contains(&part)).collect())
+        }
+        Err(_) => motors(at)?,
+    };
+    let Some(named): Option<Vec<String>> = named else { return Ok(None) };
+    let mut driven: Vec<String> = Vec::new();
+    for mut name in named {
+        // as often as there are joints, since circles of mimic joints are reported elsewhere
+        for _ in 0..robot.joints.len() {
+            let joint = robot.joints.iter().find(|joint| joint.name == name);
+            let Some(mimic) = joint.and_then(|joint| joint.mimic.as_ref()) else { break };
+            name.clone_from(&mimic.joint);
+        }
+        if !driven.contains(&name) {
+            driven.push(name);
+        }
+    }
+    Ok(Some(driven))
 }
 
 /// The frame of this name or, if there is none, the child frame of the joint of this name.

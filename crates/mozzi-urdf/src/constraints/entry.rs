@@ -1,6 +1,6 @@
 //! Reads a constraint from an entry of JSON or YAML.
 
-use crate::spelling::did_you_mean;
+use crate::report::spelling::did_you_mean;
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind};
 use mozzi::{SE3, SO3, Vec3};
 
@@ -171,11 +171,11 @@ pub(super) fn known<E: Entry>(at: &E, words: &[&'static str]) -> Result<(), E::E
         None => Ok(()),
         Some(key) => {
             let hint = did_you_mean(&key, words.iter().copied()).map_or_else(String::new, |hint| format!("; {hint}"));
-            let key = crate::vocabulary::shown(&key);
+            let key = crate::urdf::vocabulary::shown(&key);
             at.error(format!(
                 "`{key}` is not known in {}, expected {}{hint}",
                 at.name(),
-                crate::vocabulary::list(words)
+                crate::urdf::vocabulary::list(words)
             ))
         }
     }

@@ -3,11 +3,11 @@
 use super::closed_loop;
 use super::entry::{self, Entry};
 use super::yaml::{self, Node, Value};
+use crate::files;
 use mozzi::Description;
-use mozzi::model::description::Constraint;
+use mozzi::model::description::{Constraint, Limits};
 use mozzi::model::{Element, Severity};
 use std::fmt;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 /// Larger files are refused.
@@ -69,12 +69,7 @@ impl std::error::Error for ConstraintsError {
 }
 
 pub fn text(path: &Path) -> std::io::Result<String> {
-    let mut text = String::new();
-    std::fs::File::open(path)?.take(MOST_BYTES + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > MOST_BYTES {
-        return Err(std::io::Error::other("it is larger than 16 MiB"));
-    }
-    Ok(text)
+    String::from_utf8(files::read(path, MOST_BYTES)?).map_err(std::io::Error::other)
 }
 
 /// The contents of a file: constraints with their places.
@@ -89,7 +84,16 @@ pub fn add(file: &str, text: &str, mut robot: Description) -> Result<Description
         |(line, column): (usize, usize), message: String| Misplaced { file: file.to_string(), line, column, message };
     let one = |(place, message): yaml::Wrong| ConstraintsError::Refused(vec![at(place, message)]);
     let root = yaml::parse(text.strip_prefix('\u{feff}').unwrap_or(text)).map_err(one)?;
-    let contents = contents(&At { node: root.clone(), path: String::new(), place: root.place }, &robot).map_err(one)?;
+    let at_root = At { node: root.clone(), path: String::new(), place: root.place };
+    if at_root.keys().iter().any(|key| key == "closed_loop") {
+        for (joint, kind) in closed_loop::retyped(&at_root, &robot).map_err(one)? {
+            if robot.joints[joint].kind != kind {
+                (robot.joints[joint].kind, robot.joints[joint].mimic) = (kind, None);
+                robot.joints[joint].limits = Limits::default();
+            }
+        }
+    }
+    let contents = contents(&at_root, &robot).map_err(one)?;
     let before = robot.constraints.len();
     let (constraints, places): (Vec<_>, Vec<_>) = contents.constraints.into_iter().unzip();
     robot.constraints.extend(constraints);
@@ -192,7 +196,7 @@ impl Entry for At {
         let found = match &self.node.value {
             Value::Null => "null".to_string(),
             Value::Number(x) => x.to_string(),
-            Value::Text(text) => format!("`{}`", crate::vocabulary::shown(text)),
+            Value::Text(text) => format!("`{}`", crate::urdf::vocabulary::shown(text)),
             Value::Flag(flag) => flag.to_string(),
             Value::List(list) => format!("a list of {}", list.len()),
             Value::Map(_) => "a map".to_string(),

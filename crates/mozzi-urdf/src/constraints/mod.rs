@@ -20,9 +20,10 @@
 //! - `motors` names the joints that have motors; without it, all have.
 //!
 //! # robot.yaml
-//! The format of Gepetto's parallel robots: `closed_loop` lists pairs of frames that coincide, `type` is `6d` (a weld)
-//! or `3d` (a point) for each pair, `name_mot` names the motors. A name that is not a frame's is a joint's, and means
-//! the frame of its child.
+//! The format of Gepetto's parallel robots: `closed_loop` lists pairs of frames that coincide, `type` is `6d` (a weld,
+//! the default) or `3d` (a point) for each pair, `name_mot` names the motors, or a part of their names. A name that is
+//! not a frame's is a joint's, and means the frame of its child. `joint_name` and `joint_type` make joints of the
+//! robot's file spherical or fixed. A motor of a mimic joint drives the joint that it follows.
 //!
 //! Unknown and missing keys are errors, and so are aliases and tags of YAML. Every error has its line and column.
 

@@ -99,7 +99,7 @@ impl<'t> Events<'t> {
                         _ => return Err((place, "a key is a list or a map, expected a word".to_string())),
                     };
                     if !seen.insert(key.clone()) {
-                        return Err((place, format!("`{}` is given twice", crate::vocabulary::shown(&key))));
+                        return Err((place, format!("`{}` is given twice", crate::urdf::vocabulary::shown(&key))));
                     }
                     let (event, at) = self.next()?;
                     let value = self.node(event, at, depth + 1)?;

@@ -2,8 +2,8 @@
 //! attributes of `<dynamics>`.
 
 use super::element::{Editor, Tag};
-use crate::number::numbers;
-use crate::write::triple;
+use crate::text::number::numbers;
+use crate::urdf::write::triple;
 use mozzi::model::description::Joint;
 use mozzi::{SE3, Vec3};
 

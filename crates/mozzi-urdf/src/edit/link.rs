@@ -2,8 +2,8 @@
 
 use super::element::{Editor, Tag};
 use super::joint::{ROUNDING, is_near};
-use crate::number::numbers;
-use crate::write::triple;
+use crate::text::number::numbers;
+use crate::urdf::write::triple;
 use mozzi::{SO3, SpatialInertia};
 
 const MOMENTS: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];

@@ -2,10 +2,16 @@
 
 use super::vertices::extreme_vertices;
 use super::{Form, Shape, locate};
-use mozzi::simulation::{ContactPoint, Support};
+use crate::files;
+use mozzi::model::{ContactPoint, Support};
 use mozzi::{Model, Vec3};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+/// More contact points are left out: each costs time at every step.
+const MOST_POINTS: usize = 100_000;
+/// A larger mesh is refused.
+const MOST_BYTES: u64 = 64 << 20;
 
 /// The contact points of a robot's shapes, and the shapes that have none, each with the reason.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +37,7 @@ pub fn contact_points(
     (mu, restitution): (Option<f64>, f64),
 ) -> ShapeContacts {
     let (mut found, mut meshes) = (ShapeContacts::default(), Meshes::new());
+    let (mut counts, mut locked_out) = (BTreeMap::new(), 0);
     let theta = model.neutral_configuration::<f64>();
     let moves = |frame| model.body_jacobian(&theta, frame).is_ok_and(|J| J.matrix().amax() > 0.0);
     for shape in shapes.iter().filter(|shape| shape.touches) {
@@ -43,11 +50,21 @@ pub fn contact_points(
                 continue;
             }
         };
+        if found.points.len() + places.len() > MOST_POINTS {
+            locked_out += 1;
+            continue;
+        }
         for (center, support) in places {
-            let count = found.points.iter().filter(|point| point.frame == frame).count();
-            let name = if count == 0 { shape.link.clone() } else { format!("{}.{count}", shape.link) };
+            let count = counts.entry(&shape.link).or_insert(0_usize);
+            let name = if *count == 0 { shape.link.clone() } else { format!("{}.{count}", shape.link) };
+            *count += 1;
             found.points.push(ContactPoint { name, frame, center, support, mu, restitution });
         }
+    }
+    if locked_out > 0 {
+        found.left_out.push(format!(
+            "{locked_out} collision shapes: a robot has at most {MOST_POINTS} contact points, which cost time at every step"
+        ));
     }
     found
 }
@@ -56,9 +73,10 @@ pub fn contact_points(
 type Meshes = BTreeMap<PathBuf, Result<Vec<Vec3>, String>>;
 
 fn read(path: &Path) -> Result<Vec<Vec3>, String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let place = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let bytes = files::read(path, MOST_BYTES).map_err(|error| place(&error))?;
     let format = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    extreme_vertices(&format, &bytes)
+    extreme_vertices(&format, &bytes).map_err(|error| place(&error))
 }
 
 /// The points of one shape, in the frame of its link.
@@ -123,8 +141,7 @@ mod tests {
         assert!(found.points.iter().all(|point| point.mu == 0.5 && point.restitution == 0.1));
         assert_eq!((&*found.points[0].name, &*found.points[3].name), ("foot", "foot.3"));
         // the farthest down: the capsule's lower end at −1.3, the box at −1, the lying cylinder at −0.2
-        let contacts =
-            mozzi::simulation::Contacts { points: found.points, planes: vec![mozzi::simulation::Plane::ground()] };
+        let contacts = mozzi_sim::Contacts { points: found.points, planes: vec![mozzi_sim::Plane::ground()] };
         let gaps = contacts.gaps(&model, 0.0, &[0.0]);
         let lowest = |range: std::ops::Range<usize>| gaps[range].iter().fold(f64::INFINITY, |a, b| a.min(*b));
         for (range, z) in [(0..8, -1.0), (8..9, -0.1), (9..11, -0.2), (11..13, -1.3)] {

@@ -1,6 +1,6 @@
 //! Locates the meshes that a robot's file names.
 
-use crate::visible::visible;
+use crate::report::visible::visible;
 use std::ffi::OsString;
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
@@ -31,10 +31,11 @@ impl fmt::Display for NotLocated {
         let Some(first) = self.tried.first() else {
             return write!(f, "mesh {name}: expected package://, file://, or a path");
         };
-        write!(f, "mesh {name} was not found: neither {}", shown(first))?;
+        let first = shown(first);
         match self.tried.len() - 1 {
-            0 => Ok(()),
-            more => write!(f, " nor {more} other places"),
+            0 => write!(f, "mesh {name} was not found: there is no file {first}"),
+            1 => write!(f, "mesh {name} was not found: neither {first} nor at 1 other place"),
+            more => write!(f, "mesh {name} was not found: neither {first} nor at {more} other places"),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Checks that a file is a mesh. A page embeds nothing else, whatever the file's name.
 
-use crate::bytes;
-use crate::dialect::Dialect;
-use crate::source::Source;
-use crate::syntax;
+use crate::text::bytes;
+use crate::text::dialect::Dialect;
+use crate::text::source::Source;
+use crate::text::syntax;
 
 /// The words that an OBJ's lines may begin with (Wavefront's specification, version 3.0).
 const WORDS: &str = "v vt vn vp deg bmat step cstype p l f curv curv2 surf parm trim hole scrv sp end con g s mg o \
@@ -15,7 +15,7 @@ const WORDS: &str = "v vt vn vp deg bmat step cstype p l f curv curv2 surf parm 
 /// The first content that does not belong to a mesh.
 pub fn check_mesh(format: &str, file: &[u8]) -> Result<(), String> {
     match format {
-        "stl" if is_binary_stl(file) => Ok(()),
+        "stl" if is_binary_stl(file) => finite_triangles(file),
         "stl" => ascii_stl(text(file)?),
         "obj" => obj(text(file)?),
         "dae" => collada(text(file)?),
@@ -31,9 +31,22 @@ fn text(file: &[u8]) -> Result<&str, String> {
 fn is_binary_stl(file: &[u8]) -> bool {
     let Some((count, rest)) = file.get(80..).and_then(<[u8]>::split_first_chunk::<4>) else { return false };
     let count = u32::from_le_bytes(*count) as usize;
-    let corner = |bytes: &[u8]| bytes.first_chunk().copied().map(f32::from_le_bytes).is_some_and(f32::is_finite);
-    let is_triangle = |triangle: &[u8]| triangle[12..48].chunks_exact(4).all(corner);
-    count > 0 && rest.len() / 50 == count && rest.len() % 50 < 4 && rest.chunks_exact(50).all(is_triangle)
+    count > 0 && rest.len() / 50 == count && rest.len() % 50 < 4
+}
+
+/// The corners of a binary STL are finite.
+fn finite_triangles(file: &[u8]) -> Result<(), String> {
+    let is_finite = |bytes: &[u8]| bytes.first_chunk().copied().map(f32::from_le_bytes).is_some_and(f32::is_finite);
+    let wrong = file[84..].chunks_exact(50).position(|triangle| !triangle[12..48].chunks_exact(4).all(is_finite));
+    match wrong {
+        None => Ok(()),
+        Some(k) => Err(format!("triangle {} has a corner that is infinite or NaN, expected finite numbers", k + 1)),
+    }
+}
+
+/// Whether a word is a finite number.
+fn is_finite(word: &str) -> bool {
+    word.parse::<f64>().is_ok_and(f64::is_finite)
 }
 
 /// solid NAME, then for each triangle: facet normal, outer loop, three vertices, endloop, endfacet; endsolid NAME.
@@ -64,34 +77,52 @@ fn is_line<'t>(expected: &str, first: &'t str, rest: impl Iterator<Item = &'t st
     let (start, count) = expected.strip_suffix(" 3").map_or((expected, 0), |start| (start, 3));
     let start: Vec<&str> = start.split(' ').collect();
     let numbers = words.strip_prefix(start.as_slice());
-    numbers.is_some_and(|numbers| numbers.len() == count && numbers.iter().all(|word| word.parse::<f64>().is_ok()))
+    numbers.is_some_and(|numbers| numbers.len() == count && numbers.iter().all(|word| is_finite(word)))
 }
 
-/// The lines of a triangle; 3 means three numbers.
+/// The lines of a triangle; 3 means three finite numbers.
 const FACET: [&str; 7] = ["facet normal 3", "outer loop", "vertex 3", "vertex 3", "vertex 3", "endloop", "endfacet"];
 
-/// Known words with numbers; at least a vertex and a face.
+/// Known words with finite numbers; at least a vertex and a face; faces of vertices that exist.
 fn obj(text: &str) -> Result<(), String> {
-    let (mut vertices, mut faces, mut is_continued) = (0, 0, false);
+    let (mut vertices, mut faces, mut is_continued) = (0_i64, 0, false);
+    // the largest index of a vertex, and its line
+    let mut largest = (0, 0);
     for (k, line) in text.lines().enumerate() {
         let wrong = |expected: &str| Err(format!("line {}: expected {expected} of an OBJ", k + 1));
         let line = line.split('#').next().unwrap_or_default().trim();
         let was_continued = std::mem::replace(&mut is_continued, line.ends_with('\\'));
         let mut words = line.trim_end_matches('\\').split_whitespace();
-        let numbers = |mut words: std::str::SplitWhitespace<'_>| words.all(|word| word.parse::<f64>().is_ok());
+        let numbers = |mut words: std::str::SplitWhitespace<'_>| words.all(is_finite);
         let indices = |word: &str| word.split('/').all(|index| index.is_empty() || index.parse::<i64>().is_ok());
         match words.next() {
             None => {}
             Some(_) if was_continued => {}
-            Some("v" | "vt" | "vn" | "vp") if !numbers(words.clone()) => return wrong("numbers"),
+            Some("v" | "vt" | "vn" | "vp") if !numbers(words.clone()) => return wrong("finite numbers"),
+            Some("v") if !was_continued && !is_continued && words.clone().count() < 3 => return wrong("three numbers"),
             Some("f" | "l" | "p") if !words.clone().all(indices) => return wrong("indices"),
             Some("v") => vertices += 1,
-            Some("f") => faces += 1,
+            Some("f" | "l" | "p") => {
+                faces += 1;
+                for index in words.filter_map(|word| word.split('/').next()?.parse::<i64>().ok()) {
+                    // a negative index counts from the vertex before it
+                    if index == 0 || -index > vertices {
+                        return Err(format!("line {}: vertex {index} does not exist, expected 1 or more", k + 1));
+                    }
+                    largest = largest.max((index, k + 1));
+                }
+            }
             Some(word) if WORDS.split_whitespace().any(|known| known == word) => {}
             Some(_) => return wrong("a word"),
         }
     }
-    if vertices > 0 && faces > 0 { Ok(()) } else { Err("it has no faces".into()) }
+    match largest {
+        (index, line) if index > vertices => {
+            Err(format!("line {line}: vertex {index} does not exist, expected at most {vertices}"))
+        }
+        _ if vertices > 0 && faces > 0 => Ok(()),
+        _ => Err("it has no faces".into()),
+    }
 }
 
 /// XML with a mesh of Collada.
@@ -100,9 +131,14 @@ fn collada(text: &str) -> Result<(), String> {
     let document = syntax::parse(&source, Dialect::Urdf).map_err(|_| "it is not XML that can be read".to_string())?;
     let root = document.root_element();
     let is_mesh = |node: roxmltree::Node| node.tag_name().name() == "mesh";
-    match root.tag_name().name() == "COLLADA" && root.descendants().any(is_mesh) {
-        true => Ok(()),
-        false => Err("it is not Collada with a mesh".into()),
+    if root.tag_name().name() != "COLLADA" || !root.descendants().any(is_mesh) {
+        return Err("it is not Collada with a mesh".into());
+    }
+    let lists = root.descendants().filter(|node| node.tag_name().name() == "float_array");
+    let words = lists.filter_map(|list| list.text()).flat_map(str::split_whitespace);
+    match words.into_iter().find(|word| !is_finite(word)) {
+        None => Ok(()),
+        Some(_) => Err("a number of its <float_array> is infinite or NaN, expected finite numbers".into()),
     }
 }
 
@@ -132,7 +168,28 @@ mod tests {
         }
         assert_eq!(check_mesh("stl", STL.repeat(2).replace('\n', "\r\n").as_bytes()), Ok(()));
         assert_eq!(check_mesh("stl", &binary(2, 0.5)), Ok(()));
-        assert!(check_mesh("stl", &binary(3, 0.5)).is_err() && check_mesh("stl", &binary(2, f32::NAN)).is_err());
+        assert!(check_mesh("stl", &binary(3, 0.5)).is_err());
+    }
+
+    #[test]
+    fn numbers_are_finite_and_vertices_exist() {
+        let why = |format: &str, file: &[u8]| check_mesh(format, file).expect_err("a mesh that is none");
+        assert_eq!(why("stl", &binary(2, f32::NAN))[..27], *"triangle 1 has a corner tha");
+        let ascii = STL.replace("vertex 1 0 0", "vertex inf 0 0");
+        assert_eq!(why("stl", ascii.as_bytes()), "line 5: expected `vertex 3` of an STL");
+        for (text, expected) in [
+            ("v nan inf 0\nf 1 1 1\n", "line 1: expected finite numbers of an OBJ"),
+            ("v 1e999 0 0\nf 1 1 1\n", "line 1: expected finite numbers of an OBJ"),
+            ("v 0 0\nf 1 1 1\n", "line 1: expected three numbers of an OBJ"),
+            ("v 0 0 0\nf 1 2 1\nv 1 1 1\nf 1 2 3\n", "line 4: vertex 3 does not exist, expected at most 2"),
+            ("v 0 0 0\nf -1 -2 -1\n", "line 2: vertex -2 does not exist, expected 1 or more"),
+            ("v 0 0 0\nf 0 1 1\n", "line 2: vertex 0 does not exist, expected 1 or more"),
+        ] {
+            assert_eq!(why("obj", text.as_bytes()), expected);
+        }
+        assert_eq!(check_mesh("obj", b"v 0 0 0\nv 1 0 0\nf -1 -2/1 2//1\n"), Ok(()));
+        let dae = DAE.replace("<mesh/>", "<mesh><float_array>0 1 nan</float_array></mesh>");
+        assert!(why("dae", dae.as_bytes()).contains("infinite or NaN"));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 mod contact;
 mod files;
+pub(crate) mod inertia;
 mod mesh;
 mod read;
 mod shape;
@@ -14,16 +15,17 @@ pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
 
 use crate::XacroArguments;
-use crate::context::Context;
-use crate::diagnostic::Diagnostic;
-use crate::dialect::Dialect;
-use crate::error::LoadError;
-use crate::expansion;
-use crate::finding::Findings;
-use crate::pages::Pages;
-use crate::source::Source;
-use crate::version::Version;
-use crate::{bytes, embedded, file_bytes, folder_of, mjcf, syntax};
+use crate::report::diagnostic::Diagnostic;
+use crate::report::error::LoadError;
+use crate::report::finding::Findings;
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::expansion;
+use crate::text::pages::Pages;
+use crate::text::source::Source;
+use crate::text::{bytes, syntax};
+use crate::urdf::version::Version;
+use crate::{embedded, file_bytes, folder_of, mjcf};
 use mozzi::SE3;
 use std::path::Path;
 
@@ -78,6 +80,9 @@ fn parse_in(
     text: &[u8],
     arguments: &XacroArguments,
 ) -> Result<Geometry, LoadError> {
+    if text.trim_ascii_start().starts_with(b"{") {
+        return Ok(Geometry::default()); // JSON
+    }
     let mut findings = Findings::default();
     let source = Source::new(file_name, bytes::read(text, &mut findings));
     let (source, _) = expansion::prepare(source, arguments)?; // the model's reader reports warnings

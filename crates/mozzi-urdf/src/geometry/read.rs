@@ -1,11 +1,11 @@
 //! `<visual>`, `<collision>`, `<geometry>`, `<material>`.
 
 use super::shape::{Form, Purpose, Shape};
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::origin;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::origin;
+use crate::urdf::vocabulary::shown;
 use mozzi::SE3;
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ fn children<'a>(element: &Element<'a>, name: &'static str) -> impl Iterator<Item
     element.elements().filter(move |child| child.name() == name && !child.has_prefix())
 }
 
-fn placed_form(element: &Element, cx: &mut Context) -> Option<(SE3, Form)> {
+pub(super) fn placed_form(element: &Element, cx: &mut Context) -> Option<(SE3, Form)> {
     let T = children(element, "origin").next().map_or(Some(SE3::identity()), |origin| origin::read(&origin, cx));
     let first = children(element, "geometry").next().and_then(|geometry| geometry.elements().next());
     let Some(form) = first else {

@@ -1,6 +1,6 @@
 //! The vertices of a mesh that are farthest in some direction.
 
-use crate::bytes;
+use crate::text::bytes;
 use mozzi::nalgebra::Matrix3;
 use mozzi::{Scalar, Vec3};
 use std::collections::BTreeSet;

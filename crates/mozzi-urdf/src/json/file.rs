@@ -2,7 +2,7 @@
 //! last one would win silently.
 
 use super::position;
-use crate::spelling::did_you_mean;
+use crate::report::spelling::did_you_mean;
 use serde_core::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::fmt;

@@ -4,6 +4,7 @@ use super::entry::At;
 use super::file::Misplaced;
 
 /// The required and the optional keys of an object, and the objects, or lists of objects, in it.
+#[derive(Clone, Copy, Debug)]
 pub struct Object {
     required: &'static [&'static str],
     optional: &'static [&'static str],
@@ -11,7 +12,7 @@ pub struct Object {
 }
 
 const fn object(required: &'static [&'static str]) -> Object {
-    Object { required, optional: &[], children: &[] }
+    Object::of(required)
 }
 
 /// Quantities that most robots lack are optional.
@@ -43,7 +44,7 @@ const JOINT: Object = Object {
     required: &[
         "name", "parent", "child", "M", "position", "velocity", "effort", "damping", "friction", "armature", "mimic",
     ],
-    optional: &["A", "ball", "free", "stiffness", "spring_reference"],
+    optional: &["A", "ball", "free", "stiffness", "spring_reference", "acceleration"],
     children: &[("mimic", object(&["joint", "ratio", "offset"]))],
 };
 
@@ -60,10 +61,57 @@ const STATE: Object = Object {
 };
 
 impl Object {
+    /// An object with these required keys.
+    pub const fn of(required: &'static [&'static str]) -> Self {
+        Object { required, optional: &[], children: &[] }
+    }
+
+    /// The same object with these optional keys.
+    #[must_use]
+    pub const fn optional(self, optional: &'static [&'static str]) -> Self {
+        Object { optional, ..self }
+    }
+
+    /// The same object whose values of these keys are objects, or lists of them.
+    #[must_use]
+    pub const fn children(self, children: &'static [(&'static str, Object)]) -> Self {
+        Object { children, ..self }
+    }
+
+    /// Checks that a value is an object with the required keys.
+    ///
+    /// # Errors
+    /// All missing keys; a value that is no object.
+    pub fn check_required(&self, at: &At) -> Result<(), Vec<Misplaced>> {
+        if !at.value.is_object() {
+            return at.wrong("an object").map_err(|error| vec![error]);
+        }
+        let errors = at.missing(self.required);
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+
+    /// Checks a value, which must be an object, and all objects in it.
+    ///
+    /// # Errors
+    /// All unknown and missing keys; a value that is no object, where one is expected.
+    pub fn check_all(&self, at: &At) -> Result<(), Vec<Misplaced>> {
+        if !at.value.is_object() {
+            return at.wrong("an object").map_err(|error| vec![error]);
+        }
+        let mut errors = Vec::new();
+        self.check(at, &mut errors);
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+
     /// All unknown and missing keys of a value that is such an object or a list of them.
     pub fn check(&self, at: &At, errors: &mut Vec<Misplaced>) {
         if let Ok(list) = at.list() {
-            list.iter().for_each(|entry| self.check(entry, errors));
+            for entry in list {
+                match entry.value.is_object() {
+                    true => self.check(&entry, errors),
+                    false => errors.extend(entry.wrong::<()>("an object").err()),
+                }
+            }
         } else if at.value.is_object() {
             errors.extend(at.unknown(&[self.required, self.optional].concat()));
             errors.extend(at.missing(self.required));

@@ -8,11 +8,12 @@ mod position;
 mod states;
 mod value;
 
+pub use entry::{At, Read};
 pub use file::{File, Misplaced, Step, unknown_key};
+pub use keys::Object;
 pub use value::{pose, print, rows, screws, vector};
 
 use crate::constraints;
-use entry::{At, Read};
 use mozzi::model::description::{FreeJoint, Gear, Joint, JointKind, Limits, Mimic, NamedFrame, Rotor};
 use mozzi::{Base, Description, Model, ScrewAxis, SpatialInertia, Vec3};
 use serde_json::{Value, json};
@@ -29,7 +30,7 @@ pub fn to_value(robot: &Description) -> Value {
     let is_floating = robot.base == Base::Floating;
     let closing: Value = serde_json::from_str(&constraints::write(robot)).unwrap_or_default();
     let joint = |joint: &Joint| {
-        json!({
+        let mut value = json!({
             "name": joint.name, "parent": joint.parent, "child": joint.child,
             "M": pose(joint.origin),
             "A": match joint.kind {
@@ -46,7 +47,11 @@ pub fn to_value(robot: &Description) -> Value {
             "damping": joint.damping, "friction": joint.friction, "armature": joint.armature,
             "stiffness": joint.stiffness, "spring_reference": joint.spring_reference,
             "mimic": joint.mimic.as_ref().map(|m| json!({ "joint": m.joint, "ratio": m.ratio, "offset": m.offset })),
-        })
+        });
+        if let Some(limit) = joint.limits.acceleration {
+            value["acceleration"] = limit.into(); // few robots have one
+        }
+        value
     };
     json!({
         "robot": robot.name,
@@ -77,7 +82,7 @@ pub fn to_value(robot: &Description) -> Value {
 /// # Errors
 /// All unknown and missing keys, else the first other error.
 pub fn read(file: &File) -> Result<Description, Vec<Misplaced>> {
-    let (root, mut errors) = (At::root(file), Vec::new());
+    let (root, mut errors) = (At::root(file, "the robot"), Vec::new());
     keys::ROBOT.check(&root, &mut errors);
     if errors.is_empty() { description(&root).map_err(|error| vec![error]) } else { Err(errors) }
 }
@@ -177,6 +182,7 @@ fn joint(at: &At) -> Read<Joint> {
             position: at.get("position").some(At::vector)?,
             velocity: at.get("velocity").some(At::number)?,
             effort: at.get("effort").some(At::number)?,
+            acceleration: at.get("acceleration").some(At::number)?,
         },
         damping: size("damping")?,
         friction: size("friction")?,

@@ -1,12 +1,12 @@
 //! The attributes of an element, its own and those of its class.
 
 use super::class::Values;
-use crate::context::Context;
-use crate::element::{Element, Value};
-use crate::finding::Finding;
-use crate::number::{NotNumbers, numbers, up_to};
-use crate::spelling::did_you_mean;
-use crate::vocabulary::{list, shown};
+use crate::report::finding::Finding;
+use crate::report::spelling::did_you_mean;
+use crate::text::context::Context;
+use crate::text::element::{Element, Value};
+use crate::text::number::{NotNumbers, numbers, up_to};
+use crate::urdf::vocabulary::{list, shown};
 use std::rc::Rc;
 
 /// An element with or without a default class.

@@ -8,11 +8,11 @@ use super::geom::Mass;
 use super::orientation::{pose, to_z, unit};
 use super::tree::{Link, Name, Site};
 use super::{attributes::Item, vocabulary};
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::places::Place;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::report::places::Place;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use mozzi::{SE3, SpatialInertia, Vec3};
 
 /// A parent body.
@@ -53,7 +53,8 @@ impl<'a> Model<'a> {
         element.check_children(&vocabulary::BODY, cx);
         let class = self.classes.named(&element, "childclass", inside.class, cx);
         let mut origin = inside.T * pose(&item, &self.compiler, cx);
-        if item.number("gravcomp", 0.0, cx) != 0.0 {
+        let compensation = item.number("gravcomp", 0.0, cx);
+        if compensation != 0.0 {
             self.ignored.force("gravcomp", &item, "gravcomp", "gravity compensation");
         }
         if item.flag("mocap", false, cx) {
@@ -78,7 +79,7 @@ impl<'a> Model<'a> {
             if i + 1 < count {
                 let name = Name::generated(format!("{}:{}", name.shown(), read));
                 let place = Place::new(joint.item.element.span());
-                self.tree.links.push(Link { name, inertia: SpatialInertia::zero(), place });
+                self.tree.links.push(Link { name, inertia: SpatialInertia::zero(), compensation: 0.0, place });
             }
             (parent, origin) = (child, SE3::identity());
         }
@@ -87,7 +88,7 @@ impl<'a> Model<'a> {
             let fixed = Name::generated(format!("{}:fixed", name.shown()));
             self.tree.joint(fixed, [parent, link], origin, Place::new(element.span()));
         }
-        self.tree.links.push(Link { name, inertia, place });
+        self.tree.links.push(Link { name, inertia, compensation, place });
         self.draw(&contents.geoms, link);
         self.rest(contents, Carrier { link, is_static, depth: carrier.depth + 1 }, cx);
     }

@@ -1,13 +1,14 @@
 //! `<default>`: classes of values for attributes that are not written.
 
 use super::attributes::Item;
+use super::law::{self, Law};
 use super::shapes::LOOKS;
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::{Element, Value};
-use crate::finding::Finding;
-use crate::spelling::did_you_mean;
-use crate::vocabulary::{Vocabulary, shown};
+use crate::report::finding::Finding;
+use crate::report::spelling::did_you_mean;
+use crate::text::context::Context;
+use crate::text::element::{Element, Value};
+use crate::urdf::vocabulary::{Vocabulary, shown};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -32,6 +33,8 @@ impl Class {
 pub(crate) struct Classes<'a> {
     names: BTreeMap<String, Class>,
     values: Vec<BTreeMap<&'static str, Rc<Values<'a>>>>,
+    /// The laws of actuators.
+    laws: Vec<Law>,
 }
 
 /// The elements that each default applies to, and the attributes that are read.
@@ -53,7 +56,7 @@ impl<'a> Classes<'a> {
     where
         'a: 's,
     {
-        let mut classes = Classes { names: BTreeMap::new(), values: vec![BTreeMap::new()] };
+        let mut classes = Classes { names: BTreeMap::new(), values: vec![BTreeMap::new()], laws: vec![Law::default()] };
         for section in sections {
             if let Some(name) = section.attribute("class") {
                 classes.names.insert(name.text.to_string(), Class::MAIN);
@@ -85,7 +88,10 @@ impl<'a> Classes<'a> {
                 }
                 continue;
             };
-            if tag != "actuator" {
+            if tag == "actuator" {
+                child.check_attributes(&law::ANY_ACTUATOR, cx);
+                self.laws[class.0].apply(&child, cx);
+            } else {
                 child.check_attributes(words, cx);
             }
             if tag == "geom" {
@@ -118,6 +124,7 @@ impl<'a> Classes<'a> {
             }
             let inner = Class(self.values.len());
             self.values.push(self.values[class.0].clone());
+            self.laws.push(self.laws[class.0].clone());
             self.names.insert(name.text.to_string(), inner);
             self.fill(&child.called(format!("default `{}`", shown(name.text))), inner, depth + 1, cx);
         }
@@ -144,6 +151,12 @@ impl<'a> Classes<'a> {
         let help = did_you_mean(value.text, known);
         cx.findings.add(Finding::error("unknown_class", value.span, message).maybe_help(help));
         otherwise
+    }
+
+    /// The law of an actuator's class.
+    pub fn law(&self, element: &Element<'a>) -> Law {
+        let named = element.attribute("class").and_then(|value| self.names.get(value.text));
+        self.laws[named.unwrap_or(&Class::MAIN).0].clone()
     }
 
     /// An element with the values of its class, or of the enclosing class.

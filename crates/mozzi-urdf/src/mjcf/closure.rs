@@ -3,10 +3,10 @@
 use super::Model;
 use super::equality::Named;
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use std::collections::BTreeMap;
 
 impl<'a> Model<'a> {

@@ -2,10 +2,10 @@
 
 use super::attributes::Item;
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use mozzi::{SO3, Vec3};
 
 /// The source of a body's inertia.

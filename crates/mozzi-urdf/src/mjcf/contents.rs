@@ -5,10 +5,10 @@ use super::attributes::Item;
 use super::class::Class;
 use super::orientation::pose;
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::scan::MOST_DEPTH;
+use crate::report::finding::Finding;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::text::scan::MOST_DEPTH;
 use mozzi::SE3;
 
 /// An element of a body, with the configuration of its frame relative to the body's.

@@ -1,7 +1,7 @@
 //! Conversion of a robot's `qpos` and `qvel` in MuJoCo, which include mimic joints, to states of mozzi.
 
 use super::tree::Tree;
-use crate::vocabulary::shown;
+use crate::urdf::vocabulary::shown;
 use mozzi::conventions::MuJoCo;
 use mozzi::model::State;
 use mozzi::model::description::{JointKind, Link, Source};

@@ -1,6 +1,6 @@
 //! The meaning and remedy of the codes specific to MJCF.
 
-use crate::explain::Entry;
+use crate::report::explain::Entry;
 
 #[rustfmt::skip] // code, meaning, remedy
 pub(crate) const CODES: [Entry; 43] = [
@@ -64,7 +64,7 @@ pub(crate) const CODES: [Entry; 43] = [
          physical inertia instead"),
     ("key_quaternion",
         "The length of a quaternion in the qpos of a key differs from 1 by more than 0.001. It is normalized, as \
-         in MuJoCo.",
+         in MuJoCo; one of length 0 is (1, 0, 0, 0).",
         "write a unit quaternion (w, x, y, z); in the qpos of a free joint it follows the position"),
     ("long_value",
         "A value in a default class is longer than 256 bytes. No attribute needs this; the file is refused to \

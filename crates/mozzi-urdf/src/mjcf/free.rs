@@ -6,8 +6,8 @@ use super::attributes::Item;
 use super::contents::{Contents, Inside};
 use super::tree::{Free, Joint, Name};
 use super::vocabulary;
-use crate::context::Context;
-use crate::places::Place;
+use crate::report::places::Place;
+use crate::text::context::Context;
 use mozzi::SE3;
 use mozzi::model::description::{ConstraintKind, JointKind};
 
@@ -103,7 +103,7 @@ impl<'a> Model<'a> {
             self.ignored.beside("body", &link.name.shown(), link.place.span(""), &base);
         }
         for site in self.tree.sites.iter().filter(|site| !stays[site.link]) {
-            self.ignored.beside("site", &crate::vocabulary::shown(&site.name), site.place.span(""), &base);
+            self.ignored.beside("site", &crate::urdf::vocabulary::shown(&site.name), site.place.span(""), &base);
         }
         let mut count = 0;
         let number = |stays: &bool| {

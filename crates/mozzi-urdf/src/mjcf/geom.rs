@@ -3,7 +3,7 @@
 use super::Model;
 use super::attributes::Item;
 use super::orientation::{pose, to_z, unit};
-use crate::context::Context;
+use crate::text::context::Context;
 use mozzi::{SE3, Solid, SpatialInertia, Vec3};
 
 /// MuJoCo's default density, that of water: kg/m³.

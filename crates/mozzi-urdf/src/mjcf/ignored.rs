@@ -1,10 +1,10 @@
 //! Model content that does not affect the dynamics: reported once per kind, with the number of occurrences.
 
 use super::attributes::Item;
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::{Finding, Topic};
-use crate::vocabulary::shown;
+use crate::report::finding::{Finding, Topic};
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use std::collections::BTreeMap;
 use std::ops::Range;
 

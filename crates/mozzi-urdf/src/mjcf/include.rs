@@ -1,15 +1,16 @@
 //! `<include>`: files whose content replaces the `<include>` that names them.
 
 use super::Files;
-use crate::bytes::{self, MOST_BYTES};
-use crate::context::Context;
-use crate::dialect::Dialect;
-use crate::finding::{Finding, Findings};
-use crate::source::Source;
-use crate::syntax;
-use crate::vocabulary::shown;
+use crate::files;
+use crate::report::finding::{Finding, Findings};
+use crate::text::bytes::{self, MOST_BYTES};
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::source::Source;
+use crate::text::syntax;
+use crate::urdf::vocabulary::shown;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -143,8 +144,6 @@ fn open(
     if let Some(text) = text {
         return Ok((name, text.into()));
     }
-    let mut content = Vec::new();
-    let read = std::fs::File::open(real).and_then(|file| file.take(MOST_BYTES as u64 + 1).read_to_end(&mut content));
-    read.map_err(|why| fails(why.to_string()))?;
+    let content = files::read(&real, MOST_BYTES as u64).map_err(|why| fails(why.to_string()))?;
     Ok((name, content))
 }

@@ -7,10 +7,10 @@ use super::option::Options;
 use super::spring::SpringDamper;
 use super::tree::Name;
 use super::vocabulary;
-use crate::axis;
-use crate::context::Context;
-use crate::finding::Finding;
-use crate::places::Place;
+use crate::report::finding::Finding;
+use crate::report::places::Place;
+use crate::text::context::Context;
+use crate::urdf::axis;
 use mozzi::model::description::{JointKind, Limits};
 use mozzi::{SE3, ScrewAxis, Vec3};
 
@@ -68,7 +68,7 @@ impl<'a> Model<'a> {
             true => JointKind::Ball(inside.T * Vec3(center)),
             false => screw.map_or(JointKind::Fixed, JointKind::Screw),
         };
-        added.joint.limits = Limits { position: limits, velocity: None, effort };
+        added.joint.limits = Limits { position: limits, effort, ..Limits::default() };
         (added.joint.damping, added.joint.friction, added.joint.armature) = (damping, friction, armature);
         (added.joint.stiffness, added.joint.spring_reference) = (stiffness, rest);
         (added.reference, added.spring_damper) = (reference, spring_damper);
@@ -164,7 +164,7 @@ fn screw(item: &Item, T: SE3, is_slide: bool, cx: &mut Context) -> Option<ScrewA
     let kind = if is_slide { "prismatic" } else { "revolute" };
     let Some((screw, _)) = axis::screw(kind, T.R * axis) else {
         let text = item.value("axis").map_or("", |value| value.text.trim());
-        let message = format!("axis: is `{}`, expected a direction", crate::vocabulary::shown(text));
+        let message = format!("axis: is `{}`, expected a direction", crate::urdf::vocabulary::shown(text));
         let help = "the axis of a joint is a vector in the body's frame, such as `0 0 1`";
         cx.findings.add(item.error("zero_axis", "axis", &message).help(help));
         return None;

@@ -3,12 +3,12 @@
 use super::coordinates::{Coordinates, Slot};
 use super::tree::{Name, Names};
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::{Element, Value};
-use crate::finding::Finding;
-use crate::number::all_numbers;
-use crate::places::{Place, Places};
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::report::places::{Place, Places};
+use crate::text::context::Context;
+use crate::text::element::{Element, Value};
+use crate::text::number::all_numbers;
+use crate::urdf::vocabulary::shown;
 use mozzi::Description;
 use std::collections::BTreeSet;
 
@@ -21,6 +21,9 @@ const QPOS0: &str = "qpos0";
 /// Tolerance on a mimic joint's number against its source joint's, rad or m, and per second; relative above 1. MuJoCo's
 /// solver satisfies a coupling only approximately, and so do the keys that it saves.
 const TOLERANCE: f64 = 1e-3;
+
+/// MuJoCo replaces shorter quaternions by (1, 0, 0, 0).
+const SHORTEST: f64 = 1e-15;
 
 /// A `<key>`.
 pub(crate) struct Key<'a> {
@@ -85,14 +88,16 @@ fn numbers<'a>(element: &Element<'a>, attribute: &str, cx: &mut Context) -> Opti
     }
 }
 
-/// Gives the robot its keys as states, and `qpos0` as its start if this is not the neutral configuration.
-pub(crate) fn add(
-    keys: Vec<Key>,
+/// Gives the robot its keys as states, and `qpos0` as its start if this is not the neutral configuration. Returns the
+/// names of the states with their elements.
+pub(crate) fn add<'a>(
+    keys: Vec<Key<'a>>,
     slots: &[Slot],
     description: &mut Description,
     places: &mut Places,
     cx: &mut Context,
-) {
+) -> Vec<(String, Element<'a>)> {
+    let mut added = Vec::new();
     let qpos0: Vec<f64> = slots.iter().flat_map(|slot| slot.qpos0.iter().copied()).collect();
     if let (true, Some(key)) = (keys.len() * qpos0.len() > MOST_POSITIONS, keys.first()) {
         let message = format!(
@@ -101,13 +106,13 @@ pub(crate) fn add(
             qpos0.len()
         );
         cx.findings.error("too_many_keys", key.element.span(), message);
-        return;
+        return added;
     }
     if keys.is_empty() && slots.iter().all(Slot::is_neutral) {
-        return;
+        return added;
     }
     // errors of the robot itself are reported later
-    let Some(coordinates) = Coordinates::new(slots, description) else { return };
+    let Some(coordinates) = Coordinates::new(slots, description) else { return added };
     let given: BTreeSet<String> = keys.iter().filter_map(|key| key.name.given.clone()).collect();
     let mut names = Names::new("key", given);
     let rest = vec![0.0; slots.iter().map(Slot::velocities).sum()];
@@ -129,10 +134,12 @@ pub(crate) fn add(
             contradictory(&element, attribute, given, &wrong, cx);
         }
         if let Some(state) = coordinates.state(key.time, &qpos, &qvel) {
-            coordinates.name(name, &state, description);
+            coordinates.name(name.clone(), &state, description);
             places.states.push(key.place);
+            added.push((name, key.element));
         }
     }
+    added
 }
 
 /// Reports mimic joints whose coupling disagrees with a key.
@@ -166,7 +173,7 @@ fn sized(
     None
 }
 
-/// Normalizes quaternions as MuJoCo does; reports one of length 0 and returns `None`.
+/// Normalizes quaternions as MuJoCo does: one of length 0 is (1, 0, 0, 0). One that is not finite is an error.
 fn normalized(
     element: &Element,
     given: &Option<Numbers>,
@@ -180,17 +187,23 @@ fn normalized(
             let q = &mut qpos[at + range.start..at + range.end];
             let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
             let subject = format!("{}: qpos: the quaternion of joint `{}`", element.subject, slot.shown);
-            if !(length > 0.0 && length.is_finite()) {
+            if length < SHORTEST {
+                let message = format!("{subject} has the length {length}, and is (1, 0, 0, 0) here");
+                let help = "as in MuJoCo; expected a unit quaternion (w, x, y, z)";
+                cx.findings.add(Finding::warning("key_quaternion", span.clone(), message).help(help));
+                q.copy_from_slice(&[1.0, 0.0, 0.0, 0.0]);
+            } else if !length.is_finite() {
                 let message = format!("{subject} has the length {length}, expected a unit quaternion (w, x, y, z)");
                 cx.findings.error("zero_axis", span, message);
                 return None;
+            } else {
+                if (length - 1.0).abs() > TOLERANCE {
+                    let message = format!("{subject} has the length {length}, and is normalized");
+                    let help = "MuJoCo normalizes it, too; expected a unit quaternion (w, x, y, z)";
+                    cx.findings.add(Finding::warning("key_quaternion", span.clone(), message).help(help));
+                }
+                q.iter_mut().for_each(|x| *x /= length);
             }
-            if (length - 1.0).abs() > TOLERANCE {
-                let message = format!("{subject} has the length {length}, and is normalized");
-                let help = "MuJoCo normalizes it, too; expected a unit quaternion (w, x, y, z)";
-                cx.findings.add(Finding::warning("key_quaternion", span.clone(), message).help(help));
-            }
-            q.iter_mut().for_each(|x| *x /= length);
         }
         at += slot.qpos0.len();
     }

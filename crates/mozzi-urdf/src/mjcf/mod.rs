@@ -30,7 +30,8 @@
 //! # What is not read
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
 //!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed, shells.
-//! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
+//! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids. Simulations
+//!   may add the forces of actuators and gravity compensation: [`Actuated`].
 //! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without
 //!   moments, which is a point mass.
 //! - Counted ([`Loaded::unused`](crate::Loaded)), once per kind, with the codes `ignored_element` and
@@ -38,6 +39,8 @@
 //!   settings of MuJoCo's solver, appearance.
 //!
 //! Every element and attribute of MuJoCo's schema is in one of these classes; a test checks all of them.
+mod actuated;
+mod actuator;
 mod attributes;
 mod body;
 mod class;
@@ -54,6 +57,7 @@ mod include;
 mod inertial;
 mod joint;
 mod keyframe;
+mod law;
 mod option;
 mod orientation;
 mod rotor;
@@ -64,20 +68,22 @@ mod spring;
 mod tree;
 mod vocabulary;
 
+pub use actuated::Actuated;
+pub use actuator::{Actuation, Actuator, actuation, actuation_of};
 pub(crate) use explain::CODES;
 pub use explain::codes;
 pub(crate) use orientation::quaternion;
 
 use crate::XacroArguments;
-use crate::context::Context;
-use crate::dialect::Dialect;
-use crate::element::Element;
-use crate::finding::{Finding, Findings};
 use crate::geometry::Shape;
-use crate::pages::Pages;
-use crate::places::Places;
-use crate::source::Source;
-use crate::syntax;
+use crate::report::finding::{Finding, Findings};
+use crate::report::places::Places;
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::element::Element;
+use crate::text::pages::Pages;
+use crate::text::source::Source;
+use crate::text::syntax;
 use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
@@ -102,6 +108,10 @@ pub(crate) struct Model<'a> {
     pub tree: Tree,
     /// `None` if shapes are not read.
     pub shapes: Option<Shapes>,
+    /// `None` if it is not read.
+    pub actuation: Option<Actuation>,
+    /// The compensated part of each link's weight, when the tree is complete.
+    pub compensations: Vec<f64>,
 }
 
 /// The result that a caller needs from a model.
@@ -109,6 +119,7 @@ pub(crate) struct Model<'a> {
 enum Wanted {
     Dynamics,
     Shapes,
+    Actuation,
 }
 
 /// From texts to a description. Included files are added to the sources.
@@ -118,8 +129,8 @@ pub(crate) fn read(
     given: &XacroArguments,
     cx: &mut Context,
 ) -> Option<(Description, Places)> {
-    let (description, places, _) = read_pages(sources, (folder, given), Wanted::Dynamics, cx)?;
-    Some((description, places))
+    let read = read_pages(sources, (folder, given), Wanted::Dynamics, cx)?;
+    Some((read.description, read.places))
 }
 
 /// From texts to shapes, with the findings about them alone; none if the model is refused.
@@ -130,7 +141,7 @@ pub(crate) fn shapes(
 ) -> (Vec<Shape>, Vec<(String, SE3)>, Context) {
     let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
     match read_pages(sources, (folder, given), Wanted::Shapes, &mut cx) {
-        Some((description, _, Some(shapes))) => shapes.named(&description.links),
+        Some(Read { description, shapes: Some(shapes), .. }) => shapes.named(&description.links),
         _ => (Vec::new(), Vec::new(), Context::default()),
     }
 }
@@ -138,7 +149,12 @@ pub(crate) fn shapes(
 /// Where included files are searched, and texts that are read instead of files.
 type Files<'f> = (Option<&'f Path>, &'f XacroArguments);
 
-type Read = (Description, Places, Option<Shapes>);
+struct Read {
+    description: Description,
+    places: Places,
+    shapes: Option<Shapes>,
+    actuation: Option<Actuation>,
+}
 
 fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     let includes = include::gather(sources, files, cx)?;
@@ -159,7 +175,7 @@ fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut 
 fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     if root.name() != "mujoco" {
         let message =
-            format!("the root element is <{}>, expected <mujoco>", crate::vocabulary::shown(root.written_name()));
+            format!("the root element is <{}>, expected <mujoco>", crate::urdf::vocabulary::shown(root.written_name()));
         let help = "<mujocoinclude> is a part of a model: open the file that includes it";
         cx.findings.add(Finding::error("wrong_root", root.span(), message).help(help));
         return None;
@@ -177,6 +193,8 @@ fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> 
         ignored: Ignored::default(),
         tree: Tree::new(root),
         shapes: None,
+        actuation: (wanted == Wanted::Actuation).then(Actuation::default),
+        compensations: Vec::new(),
     };
     model.shapes = (wanted == Wanted::Shapes).then(|| Shapes::new(&sections, &model.classes));
     model.options = Options::read(of("option"), &mut model.ignored, cx);
@@ -196,8 +214,11 @@ fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> 
     let name = root.attribute("model").map_or("mujoco", |value| value.text);
     let tunings = spring::tunings(&model.tree.joints);
     let slots = model.tree.slots();
-    let (mut description, mut places) = model.tree.describe(name, model.options.gravity, cx);
+    model.compensations = model.tree.links.iter().map(|link| link.compensation).collect();
+    let tree = std::mem::replace(&mut model.tree, Tree::new(root));
+    let (mut description, mut places) = tree.describe(name, model.options.gravity, cx);
     spring::tune(&mut description, &tunings, cx);
-    keyframe::add(keys, &slots, &mut description, &mut places, cx);
-    Some((description, places, model.shapes))
+    let keys = keyframe::add(keys, &slots, &mut description, &mut places, cx);
+    let actuation = model.settled(&description.links, &keys);
+    Some(Read { description, places, shapes: model.shapes, actuation })
 }

@@ -3,8 +3,8 @@
 use super::attributes::Item;
 use super::ignored::Ignored;
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::Element;
+use crate::text::context::Context;
+use crate::text::element::Element;
 
 /// The options that mozzi uses.
 pub(crate) struct Options {
@@ -13,11 +13,22 @@ pub(crate) struct Options {
     pub spring: bool,
     pub friction: bool,
     pub equality: bool,
+    /// Whether actuators act, and whether their controls are clamped.
+    pub actuation: bool,
+    pub clamps: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { gravity: [0.0, 0.0, -9.81], damper: true, spring: true, friction: true, equality: true }
+        Options {
+            gravity: [0.0, 0.0, -9.81],
+            damper: true,
+            spring: true,
+            friction: true,
+            equality: true,
+            actuation: true,
+            clamps: true,
+        }
     }
 }
 
@@ -48,6 +59,8 @@ impl Options {
             options.damper &= !(passive | is_off("damper"));
             options.spring &= !(passive | is_off("spring"));
             options.friction &= !(constraint | is_off("frictionloss"));
+            options.actuation &= !is_off("actuation");
+            options.clamps &= !is_off("clampctrl");
             options.equality &= !(constraint | is_off("equality"));
         }
         if weightless {

@@ -2,9 +2,9 @@
 
 use super::attributes::Item;
 use super::compiler::Compiler;
-use crate::context::Context;
-use crate::finding::Finding;
-use crate::vocabulary::list;
+use crate::report::finding::Finding;
+use crate::text::context::Context;
+use crate::urdf::vocabulary::list;
 use mozzi::linalg::Mat3;
 use mozzi::{SE3, SO3, Vec3};
 
@@ -46,7 +46,7 @@ fn orientation(item: &Item, compiler: &Compiler, cx: &mut Context) -> SO3 {
         Some(Some(R)) => R,
         Some(None) => {
             let text = item.value(name).map_or("", |value| value.text.trim());
-            let message = format!("{name}: is `{}`, a vector of length 0", crate::vocabulary::shown(text));
+            let message = format!("{name}: is `{}`, a vector of length 0", crate::urdf::vocabulary::shown(text));
             cx.findings.add(item.error("zero_axis", name, &message));
             SO3::identity()
         }

@@ -4,14 +4,15 @@
 use super::Model;
 use super::attributes::Item;
 use super::class::{Class, MOST_SUGGESTED};
+use super::law;
 use super::tree::{Name, Rotor};
 use super::vocabulary;
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::places::Place;
-use crate::spelling::did_you_mean;
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::report::places::Place;
+use crate::report::spelling::did_you_mean;
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use mozzi::model::description::Gear;
 use std::collections::BTreeMap;
 
@@ -73,6 +74,8 @@ impl<'a> Model<'a> {
     /// Reads the rotors and dampers of actuators; their torques are arguments of the functions.
     pub fn actuator(&mut self, element: Element<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
         let item = self.classes.item(element, "actuator", Class::MAIN, cx);
+        item.element.check_attributes(&law::ANY_ACTUATOR, cx);
+        self.drive(&item, names, cx);
         if item.overlaid::<3>("damping", cx) != [0.0; 3] {
             self.ignored.force("actuator damping", &item, "damping", "damping of the actuator");
         }

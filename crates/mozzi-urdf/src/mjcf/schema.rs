@@ -1,7 +1,7 @@
 //! Every word of MuJoCo's schema is computed, refused by name, or listed as ignored.
 
 use super::vocabulary;
-use crate::vocabulary::Vocabulary;
+use crate::urdf::vocabulary::Vocabulary;
 use crate::{Diagnostic, parse};
 
 /// Made by `oracles/make_schema.py`: a path and its attributes on each line.

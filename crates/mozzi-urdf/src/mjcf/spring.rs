@@ -1,8 +1,8 @@
 //! `springdamper`: the stiffness and the damping that MuJoCo chooses for a joint.
 
 use super::tree::Joint;
-use crate::context::Context;
-use crate::finding::Finding;
+use crate::report::finding::Finding;
+use crate::text::context::Context;
 use mozzi::quantities::MassMatrixInverse;
 use mozzi::{Description, Freedom, Place};
 

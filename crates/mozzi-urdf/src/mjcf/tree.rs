@@ -1,11 +1,11 @@
 //! The tree while it is read. Joints refer to links by number, since names are assigned once all are known.
 
 use super::spring::SpringDamper;
-use crate::context::Context;
-use crate::element::Element;
-use crate::finding::Finding;
-use crate::places::{Place, Places};
-use crate::vocabulary::shown;
+use crate::report::finding::Finding;
+use crate::report::places::{Place, Places};
+use crate::text::context::Context;
+use crate::text::element::Element;
+use crate::urdf::vocabulary::shown;
 use mozzi::model::description::{self, ConstraintKind, FreeJoint, Gear, JointKind};
 use mozzi::{Base, Description, SE3, SpatialInertia};
 use std::collections::BTreeSet;
@@ -38,6 +38,8 @@ impl Name {
 pub(crate) struct Link {
     pub name: Name,
     pub inertia: SpatialInertia,
+    /// The part of its weight that is compensated.
+    pub compensation: f64,
     pub place: Place,
 }
 
@@ -114,6 +116,7 @@ impl Tree {
         let world = Link {
             name: Name { given: Some("world".to_string()), otherwise: String::new() },
             inertia: SpatialInertia::zero(),
+            compensation: 0.0,
             place: Place::new(root.span()),
         };
         let place = Place::new(root.span());

@@ -1,6 +1,6 @@
 //! The words of MJCF.
 
-use crate::vocabulary::{NOTHING, Vocabulary};
+use crate::urdf::vocabulary::{NOTHING, Vocabulary};
 
 pub(crate) const MUJOCO: Vocabulary = Vocabulary {
     attributes: &["model"],
@@ -95,11 +95,19 @@ pub(crate) const OPTION: Vocabulary = Vocabulary {
     ..NOTHING
 };
 pub(crate) const FLAG: Vocabulary = Vocabulary {
-    attributes: &["gravity", "damper", "spring", "passive", "frictionloss", "equality", "constraint"],
-    listed: &[
+    attributes: &[
+        "gravity",
+        "damper",
+        "spring",
+        "passive",
+        "frictionloss",
+        "equality",
+        "constraint",
         "actuation",
-        "autoreset",
         "clampctrl",
+    ],
+    listed: &[
+        "autoreset",
         "contact",
         "diagexact",
         "energy",
@@ -330,5 +338,21 @@ pub(crate) const KEY: Vocabulary = Vocabulary {
     listed: &["act", "ctrl", "mpos", "mquat", "plastic"],
     ..NOTHING
 };
-pub(crate) const ACTUATOR: Vocabulary =
-    Vocabulary { attributes: &["class", "armature", "damping", "gear", "joint", "tendon"], ..NOTHING };
+/// What is read of an actuator besides its law, and kept of its default class.
+pub(crate) const ACTUATOR: Vocabulary = Vocabulary {
+    attributes: &[
+        "class",
+        "armature",
+        "damping",
+        "gear",
+        "joint",
+        "tendon",
+        "ctrllimited",
+        "ctrlrange",
+        "forcelimited",
+        "forcerange",
+        "inheritrange",
+        "delay",
+    ],
+    ..NOTHING
+};

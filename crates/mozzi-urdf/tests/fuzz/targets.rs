@@ -192,7 +192,8 @@ impl Reader<'_> {
             if self.below(3) == 0 {
                 let (a, b) = (self.number(), self.number());
                 let position = Some(if self.below(8) == 0 { [a, b] } else { [a.min(b), a.max(b)] });
-                joint.limits = Limits { position, velocity: Some(self.size()), effort: Some(self.size()) };
+                joint.limits =
+                    Limits { position, velocity: Some(self.size()), effort: Some(self.size()), ..Limits::default() };
             }
             if self.below(4) == 0 {
                 let source = self.below(8);

@@ -2,8 +2,8 @@
 
 use super::entry::text;
 use crate::robot::Robot;
-use mozzi::simulation::{Contacts, Plane};
 use mozzi::{Freedom, Model};
+use mozzi_sim::{Contacts, Plane};
 use serde_json::{Value, json};
 
 /// Closes loops: the joint of `hold` stays if that is possible.

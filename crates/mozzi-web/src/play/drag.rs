@@ -3,8 +3,9 @@
 use super::close::closed;
 use super::entry::{text, three};
 use crate::robot::Robot;
+use mozzi::model::integrate;
 use mozzi::nalgebra::{DMatrix, DVector, Vector3};
-use mozzi::{Error, FrameId, Freedom, Model, Place, Vec3, integrate};
+use mozzi::{Error, FrameId, Freedom, Model, Place, Vec3};
 use serde_json::Value;
 
 /// Steps of Gauss and Newton's method; damping relative to the largest entry of JᵀJ; the longest step.

@@ -1,10 +1,10 @@
 //! The motors of a simulated robot.
 
 use mozzi::nalgebra::DVector;
-use mozzi::simulation::{GravityCompensation, Input, Zero};
 use mozzi::{Error, Model};
 use mozzi_motion::controllers::{ComputedTorque, Gains, PdGravity};
 use mozzi_motion::trajectories::{Desired, Reference};
+use mozzi_sim::{GravityCompensation, Input, Zero};
 
 /// How the motors act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

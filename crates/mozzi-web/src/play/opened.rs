@@ -3,8 +3,8 @@
 use super::files::settings;
 use super::shapes::drawn;
 use crate::robot::Robot;
-use mozzi::simulation::ContactPoint;
 use mozzi::{Description, Model, Vec3};
+use mozzi_sim::ContactPoint;
 use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, parse_with as geometry};
 use mozzi_urdf::{Diagnostic, Style, json};
 use serde_json::{Map, Value, json};

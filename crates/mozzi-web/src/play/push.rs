@@ -1,8 +1,8 @@
 //! A spring and a damper between a point of the robot and the mouse.
 
 use super::entry::{text, three};
-use mozzi::simulation::Input;
 use mozzi::{Error, FrameId, Model, Vec3, Wrench};
+use mozzi_sim::Input;
 use serde_json::Value;
 
 /// The rate of the spring with the robot's mass, rad/s, and the largest force as a multiple of its weight.
@@ -51,7 +51,7 @@ impl Input for Push<'_> {
         theta: &[f64],
         dtheta: &[f64],
         wrenches: &mut Vec<(FrameId, Wrench)>,
-    ) -> Result<(), Error> {
+    ) -> Result<(), mozzi_sim::Error> {
         let (_, f) = self.force(theta, dtheta)?;
         // what the robot applies to the mouse
         let f = self.model.forward_kinematics(theta, self.frame)?.R.inverse_mul(-f);

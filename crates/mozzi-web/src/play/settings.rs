@@ -3,8 +3,8 @@
 use super::entry::{number, numbers, text};
 use super::motors::{Kind, gains};
 use crate::robot::Robot;
-use mozzi::simulation::{ContactPoint, Energy, Policy};
 use mozzi_motion::controllers::Gains;
+use mozzi_sim::{ContactPoint, Energy, Policy};
 use serde_json::{Value, json};
 
 /// Motors, contacts and limits, and the account of the energies since the last reset.

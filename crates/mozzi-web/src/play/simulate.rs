@@ -5,8 +5,8 @@ use super::entry::number;
 use super::motors::motors;
 use super::push::Push;
 use crate::robot::Robot;
-use mozzi::simulation::{ContactPoint, Contacts, Input, Method, Options, Plane, Policy, Simulation};
-use mozzi::{Error, FrameId, Wrench};
+use mozzi::{FrameId, Wrench};
+use mozzi_sim::{ContactPoint, Contacts, Error, Input, Method, Options, Plane, Policy, Simulation};
 use serde_json::{Value, json};
 
 /// Motors, and the mouse if it pushes.
@@ -34,7 +34,6 @@ impl Input for Both<'_> {
 
 /// Steps from the state in the inputs; the new state, θ̈ and τ go there. Answers with energies, contacts and the push.
 pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
-    let said = |error: Error| error.to_string();
     let (length, steps) = (number(command, "step")?, number(command, "steps")?);
     let steps = steps as usize;
     let [mut theta, dtheta] = [robot.theta().to_vec(), robot.dtheta().to_vec()];
@@ -57,12 +56,12 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         simulation.contacts = Contacts { points, planes: vec![Plane::ground()] };
     }
     let within_ground = |error: Error| match &error {
-        Error::BadArgument { what: "the start", found, .. }
+        Error::Model(mozzi::Error::BadArgument { what: "the start", found, .. })
             if found.starts_with("contact point") && !model.is_floating() =>
         {
             format!("{found}, the ground: with a floating base the robot is put on it")
         }
-        _ => said(error),
+        _ => error.to_string(),
     };
     // the smooth method as long as no stop acts in this picture, and there is no dry friction
     let smooth = Simulation::new(Options { method: Method::RungeKutta4, ..options });
@@ -83,7 +82,7 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         .map(|((point, T), f)| json!({ "frame": model.frame_name(point.frame), "p": T.p.0, "f": f }))
         .collect();
     let pushed = match &push {
-        Some(push) => Some(push.force(last.theta, last.dtheta).map_err(said)?),
+        Some(push) => Some(push.force(last.theta, last.dtheta).map_err(|error| error.to_string())?),
         None => None,
     };
     let (energy, drift) = (last.energy, last.energy.drift_since(&first.energy));

@@ -32,7 +32,8 @@ pub struct ForwardDynamicsDerivatives {
 }
 
 impl Model<f64> {
-    /// ∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M: see [`inverse_dynamics_derivatives`](crate::inverse_dynamics_derivatives()).
+    /// ∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M: see
+    /// [`inverse_dynamics_derivatives`](crate::dynamics::inverse_dynamics_derivatives()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -50,7 +51,7 @@ impl Model<f64> {
     }
 
     /// θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹: see
-    /// [`forward_dynamics_derivatives`](crate::forward_dynamics_derivatives()).
+    /// [`forward_dynamics_derivatives`](crate::dynamics::forward_dynamics_derivatives()).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
@@ -68,7 +69,7 @@ impl Model<f64> {
         Ok(ForwardDynamicsDerivatives { ddtheta, d_theta: next(), d_dtheta: next(), d_tau: next() })
     }
 
-    /// ∂g/∂θ under the model's gravity: see [`gravity_forces_derivative`](crate::gravity_forces_derivative).
+    /// ∂g/∂θ under the model's gravity: see [`gravity_forces_derivative`](crate::dynamics::gravity_forces_derivative).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -77,7 +78,7 @@ impl Model<f64> {
     }
 
     /// ∂(JᵀF)/∂θ for wrenches that frames apply to the environment: see
-    /// [`tip_forces_derivative`](crate::tip_forces_derivative).
+    /// [`tip_forces_derivative`](crate::dynamics::tip_forces_derivative).
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
@@ -85,7 +86,8 @@ impl Model<f64> {
         self.matrix(q::TipForcesDerivative, &[theta], &Environment { applied, ..self.environment() })
     }
 
-    /// ∂(M(θ)x)/∂θ for a constant x: see [`mass_matrix_product_derivative`](crate::mass_matrix_product_derivative).
+    /// ∂(M(θ)x)/∂θ for a constant x: see
+    /// [`mass_matrix_product_derivative`](crate::dynamics::mass_matrix_product_derivative).
     ///
     /// # Errors
     /// [`Error::WrongLength`].

@@ -1,7 +1,7 @@
 //! Directional derivatives of any function of θ.
 
-use crate::kinematics::{integrate, seed_direction};
 use crate::model::{Error, Model};
+use crate::model::{integrate, seed_direction};
 use crate::scalar::Dual;
 use alloc::vec::Vec;
 
@@ -13,7 +13,8 @@ impl Model<f64> {
     ///
     /// ```
     /// use mozzi::model::description::{Joint, JointKind};
-    /// use mozzi::{Description, Dual, SE3, ScrewAxis, SpatialInertia, Vec3, Workspace, mass_matrix};
+    /// use mozzi::{Description, Dual, SE3, ScrewAxis, SpatialInertia, Vec3, Workspace};
+    /// use mozzi::dynamics::mass_matrix;
     /// // an arm that turns about z, and a slide along it that carries 2 kg: M₁₁ = 2 θ₂²
     /// let turn = JointKind::Screw(ScrewAxis::new([0.0, 0.0, 1.0], [0.0; 3])?);
     /// let slide = JointKind::Screw(ScrewAxis::prismatic([1.0, 0.0, 0.0])?);

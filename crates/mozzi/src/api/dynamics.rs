@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 impl Model<f64> {
-    /// τ = M(θ)θ̈ + c + g + JᵀF + f(θ, θ̇): see [`inverse_dynamics`](crate::inverse_dynamics()).
+    /// τ = M(θ)θ̈ + c + g + JᵀF + f(θ, θ̇): see [`inverse_dynamics`](crate::dynamics::inverse_dynamics()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -22,7 +22,7 @@ impl Model<f64> {
         self.vector(q::InverseDynamics, &[theta, dtheta, ddtheta], environment)
     }
 
-    /// h = c + g (+ JᵀF + the base's terms, if given): see [`bias_forces`](crate::bias_forces()).
+    /// h = c + g (+ JᵀF + the base's terms, if given): see [`bias_forces`](crate::dynamics::bias_forces()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -30,7 +30,7 @@ impl Model<f64> {
         self.vector(q::BiasForces, &[theta, dtheta], environment)
     }
 
-    /// c(θ, θ̇): see [`velocity_product`](crate::velocity_product).
+    /// c(θ, θ̇): see [`velocity_product`](crate::dynamics::velocity_product).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -38,7 +38,7 @@ impl Model<f64> {
         self.vector(q::VelocityProduct, &[theta, dtheta], &self.environment())
     }
 
-    /// g(θ) under the model's gravity: see [`gravity_forces`](crate::gravity_forces).
+    /// g(θ) under the model's gravity: see [`gravity_forces`](crate::dynamics::gravity_forces).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -46,7 +46,7 @@ impl Model<f64> {
         self.vector(q::GravityForces, &[theta], &self.environment())
     }
 
-    /// JᵀF for wrenches that frames apply to the environment: see [`tip_forces`](crate::tip_forces).
+    /// JᵀF for wrenches that frames apply to the environment: see [`tip_forces`](crate::dynamics::tip_forces).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -71,7 +71,7 @@ impl Model<f64> {
         M
     }
 
-    /// f_s(θ) = k(θ − θ₀): see [`spring_forces`](crate::spring_forces()).
+    /// f_s(θ) = k(θ − θ₀): see [`spring_forces`](crate::dynamics::spring_forces()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -79,7 +79,7 @@ impl Model<f64> {
         self.vector(q::SpringForces, &[theta], &self.environment())
     }
 
-    /// M(θ): see [`mass_matrix`](crate::mass_matrix()).
+    /// M(θ): see [`mass_matrix`](crate::dynamics::mass_matrix()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -87,7 +87,7 @@ impl Model<f64> {
         self.matrix(q::MassMatrix, &[theta], &self.environment())
     }
 
-    /// Ṁ(θ, θ̇): see [`mass_matrix_rate`](crate::mass_matrix_rate).
+    /// Ṁ(θ, θ̇): see [`mass_matrix_rate`](crate::dynamics::mass_matrix_rate).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -95,7 +95,7 @@ impl Model<f64> {
         self.matrix(q::MassMatrixRate, &[theta, dtheta], &self.environment())
     }
 
-    /// C(θ, θ̇) of the Christoffel symbols: see [`coriolis_matrix`](crate::coriolis_matrix()).
+    /// C(θ, θ̇) of the Christoffel symbols: see [`coriolis_matrix`](crate::dynamics::coriolis_matrix()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -103,7 +103,7 @@ impl Model<f64> {
         self.matrix(q::CoriolisMatrix, &[theta, dtheta], &self.environment())
     }
 
-    /// ½ θ̇ᵀMθ̇, base at rest: see [`kinetic_energy`](crate::kinetic_energy).
+    /// ½ θ̇ᵀMθ̇, base at rest: see [`kinetic_energy`](crate::dynamics::kinetic_energy).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -111,7 +111,7 @@ impl Model<f64> {
         Ok(self.first(q::KineticEnergy, &[theta, dtheta], &self.environment())?[0])
     }
 
-    /// −Σ m gᵀp under the model's gravity: see [`potential_energy`](crate::potential_energy).
+    /// −Σ m gᵀp under the model's gravity: see [`potential_energy`](crate::dynamics::potential_energy).
     ///
     /// # Errors
     /// [`Error::WrongLength`].

@@ -6,7 +6,8 @@ use nalgebra::DVector;
 
 impl Model<f64> {
     /// θ̈ from τ: by articulated bodies, or by the mass matrix (see
-    /// [`solves_by_mass_matrix`](Self::solves_by_mass_matrix)). See [`forward_dynamics`](crate::forward_dynamics()).
+    /// [`solves_by_mass_matrix`](Self::solves_by_mass_matrix)). See
+    /// [`forward_dynamics`](crate::dynamics::forward_dynamics()).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
@@ -21,7 +22,7 @@ impl Model<f64> {
     }
 
     /// θ̈ from τ by composite rigid bodies and the factors of M along the tree: see
-    /// [`forward_dynamics_by_mass_matrix`](crate::forward_dynamics_by_mass_matrix).
+    /// [`forward_dynamics_by_mass_matrix`](crate::dynamics::forward_dynamics_by_mass_matrix).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.

@@ -40,7 +40,7 @@ impl Model<f64> {
     }
 
     /// The momentum of the moving links and a floating base, (angular, linear) in kg m²/s and kg m/s, about a point of
-    /// {s}, in {s} coordinates: see [`momentum`](crate::momentum()).
+    /// {s}, in {s} coordinates: see [`momentum`](crate::dynamics::momentum()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -49,7 +49,7 @@ impl Model<f64> {
     }
 
     /// ḣ, the rate of the momentum about a fixed point of {s}; with the present centre of mass as the point, the rate
-    /// of the centroidal momentum. See [`momentum_rate`](crate::momentum_rate).
+    /// of the centroidal momentum. See [`momentum_rate`](crate::dynamics::momentum_rate).
     ///
     /// # Errors
     /// [`Error::WrongLength`].

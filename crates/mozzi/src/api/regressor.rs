@@ -5,7 +5,7 @@ use crate::quantities as q;
 use nalgebra::{DMatrix, RowDVector};
 
 impl Model<f64> {
-    /// Y(θ, θ̇, θ̈), n × p: see [`regressor`](crate::regressor()). τ = Y π + JᵀF with π =
+    /// Y(θ, θ̇, θ̈), n × p: see [`regressor`](crate::dynamics::regressor()). τ = Y π + JᵀF with π =
     /// [`parameters`](Model::parameters).
     ///
     /// ```
@@ -38,7 +38,7 @@ impl Model<f64> {
     }
 
     /// (y_𝒦, y_𝒫) with 𝒦 = y_𝒦 π and 𝒫 = y_𝒫 π + 𝒫₀, under the model's gravity and with {s} at rest: see
-    /// [`energy_regressors`](crate::energy_regressors).
+    /// [`energy_regressors`](crate::dynamics::energy_regressors).
     ///
     /// # Errors
     /// [`Error::WrongLength`].

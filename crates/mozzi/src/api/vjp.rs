@@ -32,7 +32,7 @@ pub struct ForwardDynamicsVjp {
 }
 
 /// The gradient of xᵀτ or xᵀθ̈ by the robot: see
-/// [`inverse_dynamics_parameter_vjp`](crate::inverse_dynamics_parameter_vjp()).
+/// [`inverse_dynamics_parameter_vjp`](crate::dynamics::inverse_dynamics_parameter_vjp()).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterVjp {
     /// By the [`parameters`](Model::parameters) π, in their order.
@@ -45,7 +45,7 @@ pub struct ParameterVjp {
     pub d_gravity: Vector3<f64>,
 }
 
-/// The gradients of the energies: see [`energy_gradients`](crate::energy_gradients()).
+/// The gradients of the energies: see [`energy_gradients`](crate::dynamics::energy_gradients()).
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyGradients {
     /// ∂𝒦/∂θ.
@@ -57,7 +57,7 @@ pub struct EnergyGradients {
 }
 
 impl Model<f64> {
-    /// xᵀ∂τ/∂θ, xᵀ∂τ/∂θ̇ and xᵀ∂τ/∂θ̈ in O(n): see [`inverse_dynamics_vjp`](crate::inverse_dynamics_vjp()).
+    /// xᵀ∂τ/∂θ, xᵀ∂τ/∂θ̇ and xᵀ∂τ/∂θ̈ in O(n): see [`inverse_dynamics_vjp`](crate::dynamics::inverse_dynamics_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -74,7 +74,7 @@ impl Model<f64> {
         Ok(InverseDynamicsVjp { d_theta, d_dtheta, d_ddtheta })
     }
 
-    /// xᵀ∂θ̈/∂θ, xᵀ∂θ̈/∂θ̇ and xᵀ∂θ̈/∂τ in O(n): see [`forward_dynamics_vjp`](crate::forward_dynamics_vjp()).
+    /// xᵀ∂θ̈/∂θ, xᵀ∂θ̈/∂θ̇ and xᵀ∂θ̈/∂τ in O(n): see [`forward_dynamics_vjp`](crate::dynamics::forward_dynamics_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
@@ -92,7 +92,7 @@ impl Model<f64> {
     }
 
     /// The gradient of xᵀτ by the robot in O(n): see
-    /// [`inverse_dynamics_parameter_vjp`](crate::inverse_dynamics_parameter_vjp()).
+    /// [`inverse_dynamics_parameter_vjp`](crate::dynamics::inverse_dynamics_parameter_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -108,7 +108,7 @@ impl Model<f64> {
     }
 
     /// The gradient of xᵀθ̈ by the robot in O(n): see
-    /// [`forward_dynamics_parameter_vjp`](crate::forward_dynamics_parameter_vjp()).
+    /// [`forward_dynamics_parameter_vjp`](crate::dynamics::forward_dynamics_parameter_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.
@@ -124,7 +124,7 @@ impl Model<f64> {
     }
 
     /// `[xᵀ∂(M(θ)a)/∂θ, M(θ)x]`, the gradient of xᵀMa: see
-    /// [`mass_matrix_product_vjp`](crate::mass_matrix_product_vjp()).
+    /// [`mass_matrix_product_vjp`](crate::dynamics::mass_matrix_product_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -132,7 +132,7 @@ impl Model<f64> {
         self.compute(q::MassMatrixProductVjp, &[theta, a, x], &self.environment()).map(vectors)
     }
 
-    /// ∂𝒦/∂θ, ∂𝒦/∂θ̇ and ∂𝒫/∂θ: see [`energy_gradients`](crate::energy_gradients()).
+    /// ∂𝒦/∂θ, ∂𝒦/∂θ̇ and ∂𝒫/∂θ: see [`energy_gradients`](crate::dynamics::energy_gradients()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -147,7 +147,7 @@ impl Model<f64> {
         Ok(EnergyGradients { kinetic_d_theta, kinetic_d_dtheta, potential_d_theta })
     }
 
-    /// `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, the gradient of wᵀ𝒱_b: see [`frame_twist_vjp`](crate::frame_twist_vjp()).
+    /// `[wᵀ∂𝒱_b/∂θ, J_bᵀw]`, the gradient of wᵀ𝒱_b: see [`frame_twist_vjp`](crate::dynamics::frame_twist_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
@@ -163,7 +163,7 @@ impl Model<f64> {
     }
 
     /// `[wᵀ∂a_b/∂θ, wᵀ∂a_b/∂θ̇, J_bᵀw]`, the gradient of wᵀa_b: see
-    /// [`frame_acceleration_vjp`](crate::frame_acceleration_vjp()).
+    /// [`frame_acceleration_vjp`](crate::dynamics::frame_acceleration_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::BadArgument`] for a frame of another model.
@@ -180,7 +180,7 @@ impl Model<f64> {
     }
 
     /// `[wᵀ∂h/∂θ, wᵀ∂h/∂θ̇]`, the gradient of wᵀh, h the momentum about a point of {s}: see
-    /// [`momentum_vjp`](crate::momentum_vjp()).
+    /// [`momentum_vjp`](crate::dynamics::momentum_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -195,7 +195,8 @@ impl Model<f64> {
         self.compute(query, &[theta, dtheta, &w.to_array()], &self.environment()).map(vectors)
     }
 
-    /// `[wᵀ∂ḣ/∂θ, wᵀ∂ḣ/∂θ̇, wᵀ∂ḣ/∂θ̈]`, the gradient of wᵀḣ: see [`momentum_rate_vjp`](crate::momentum_rate_vjp()).
+    /// `[wᵀ∂ḣ/∂θ, wᵀ∂ḣ/∂θ̇, wᵀ∂ḣ/∂θ̈]`, the gradient of wᵀḣ: see
+    /// [`momentum_rate_vjp`](crate::dynamics::momentum_rate_vjp()).
     ///
     /// # Errors
     /// [`Error::WrongLength`].

@@ -13,76 +13,15 @@ use crate::dynamics::{composite_inertias, fill_mass_matrix};
 use crate::linalg::{dense_ldlt, ldlt};
 use crate::model::{Model, Tie};
 use crate::scalar::{Scalar, pass};
-use crate::workspace::Workspace;
-use alloc::vec;
-use alloc::vec::Vec;
+use crate::workspace::{ConstraintMemory, MOST_ROWS, Workspace};
 
 /// The number of proximal iterations.
 const STEPS: usize = 3;
 
-/// The number of rows of a weld, the most of any constraint.
-const MOST_ROWS: usize = 6;
-
-/// Memory of the constrained dynamics, m constraint rows and n velocities.
-#[derive(Clone, Debug)]
-pub struct ConstraintMemory<S = f64> {
-    /// A, m × n by rows.
-    pub A: Vec<S>,
-    /// Ȧθ̇, m.
-    pub dA_dtheta: Vec<S>,
-    /// L and D of M.
-    pub(crate) M: Vec<S>,
-    /// Y = A L⁻¹, m × n.
-    pub(crate) Y: Vec<S>,
-    /// The rows of Y D⁻¹ that belong to one constraint.
-    scaled: Vec<S>,
-    /// G, m × m, and then the factors of G + ρ1.
-    G: Vec<S>,
-    one_over_d: Vec<S>,
-    rho: S,
-    /// The increment of λ.
-    step: Vec<S>,
-    /// The right-hand side, m numbers; `lambda` has m as well, `vector` n.
-    pub(crate) right: Vec<S>,
-    pub(crate) lambda: Vec<S>,
-    pub(crate) vector: Vec<S>,
-}
-
-impl<S: Scalar> ConstraintMemory<S> {
-    /// Memory for this model.
-    pub fn new<C: Scalar>(model: &Model<C>) -> Self {
-        let (m, n, o) = (model.constraint_rows(), model.n(), S::zero());
-        ConstraintMemory {
-            A: vec![o; m * n],
-            dA_dtheta: vec![o; m],
-            M: vec![o; n * n],
-            Y: vec![o; m * n],
-            scaled: vec![o; MOST_ROWS * n],
-            G: vec![o; m * m],
-            one_over_d: vec![o; m],
-            rho: o,
-            step: vec![o; m],
-            right: vec![o; m],
-            lambda: vec![o; m],
-            vector: vec![o; n],
-        }
-    }
-
-    /// Sets every number to NaN.
-    pub(crate) fn fill_nan(&mut self) {
-        let nan = S::from_f64(f64::NAN);
-        let ConstraintMemory { A, dA_dtheta, M, Y, scaled, G, one_over_d, rho, step, right, lambda, vector } = self;
-        *rho = nan;
-        for list in [A, dA_dtheta, M, Y, scaled, G, one_over_d, step, right, lambda, vector] {
-            list.fill(nan);
-        }
-    }
-}
-
 pass! {
 /// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. The workspace holds T_{i,i−1}(θ), the
 /// memory A.
-pub(crate) fn factor<S: Scalar + From<C>, C: Scalar>(
+pub fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     workspace: &mut Workspace<S>,
     memory: &mut ConstraintMemory<S>,
@@ -211,7 +150,7 @@ pub(crate) fn subtract_forces<S: Scalar, C: Scalar>(model: &Model<C>, memory: &C
 
 /// Adds b_r = Σ_j Y_rj x_j to `right`.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn add_products<S: Scalar, C: Scalar>(model: &Model<C>, rows: &[S], x: &[S], right: &mut [S]) {
+pub fn add_products<S: Scalar, C: Scalar>(model: &Model<C>, rows: &[S], x: &[S], right: &mut [S]) {
     let n = model.n();
     for tie in &model.ties.list {
         for r in tie.first..tie.first + tie.kind.rows() {

@@ -1,15 +1,15 @@
 //! Forward dynamics of robots with constraints (Modern Robotics, section 8.7).
 
-use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_forces};
+use super::delassus::{add_products, factor, solve, subtract_forces};
 use super::jacobian::rows;
 use crate::dynamics::{add_spring_forces, bias_forces, joint_friction};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     ACCELERATION, Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output,
 };
 use crate::scalar::Scalar;
-use crate::workspace::Workspace;
+use crate::workspace::{ConstraintMemory, Workspace};
 
 /// θ̈ and λ of a robot with constraints:
 ///
@@ -24,7 +24,7 @@ use crate::workspace::Workspace;
 /// # Panics
 /// When θ is not nq long, θ̇, τ or θ̈ not n, or λ not m.
 ///
-/// [`constraint_impulse`]: crate::constraint_impulse
+/// [`constraint_impulse`]: crate::constraints::constraint_impulse
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[allow(clippy::too_many_arguments)] // forward_dynamics' seven, memory, and λ
 pub fn constrained_forward_dynamics<S: Scalar + From<C>, C: Scalar>(

@@ -1,12 +1,12 @@
 //! The impulse of constraints that begin to act suddenly (Modern Robotics, section 8.7).
 
-use super::delassus::{ConstraintMemory, add_products, factor, solve, subtract_forces};
+use super::delassus::{add_products, factor, solve, subtract_forces};
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
 use crate::model::Model;
-use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, THETA, VECTOR, output};
+use crate::quantities::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
-use crate::workspace::Workspace;
+use crate::workspace::{ConstraintMemory, Workspace};
 
 /// The velocities θ̇⁺ after the constraints have begun to act, and their impulse Λ, m numbers, N s and N m s:
 ///
@@ -42,7 +42,7 @@ pub fn constraint_impulse<S: Scalar + From<C>, C: Scalar>(
 
 /// −M⁻¹Aᵀλ, where λ solves A M⁻¹Aᵀλ = b and b is `memory.right`.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>, x: &mut [S]) {
+pub fn change<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut ConstraintMemory<S>, x: &mut [S]) {
     solve(model, memory);
     x.fill(S::zero());
     subtract_forces(model, memory, x);

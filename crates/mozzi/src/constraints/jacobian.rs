@@ -6,7 +6,7 @@ use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::description::Closure;
 use crate::model::{End, Model, Own, TieKind, Way};
-use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, output};
+use crate::quantities::{Call, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
 use crate::workspace::Workspace;

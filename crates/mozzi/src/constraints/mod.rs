@@ -10,19 +10,18 @@
 //! [`Model::with_constraints`](crate::Model::with_constraints). They may be redundant: λ is then the one of least norm
 //! in the limit, and Aᵀλ and θ̈ are unique.
 
-pub(crate) mod delassus;
-mod forward_dynamics;
-mod impulse;
-mod jacobian;
-mod projection;
+pub mod delassus;
+pub(crate) mod forward_dynamics;
+pub(crate) mod impulse;
+pub(crate) mod jacobian;
+pub(crate) mod projection;
 mod relative_motion;
 #[cfg(test)]
 mod tests;
 
-pub use delassus::ConstraintMemory;
-pub use forward_dynamics::{ConstrainedForwardDynamics, constrained_forward_dynamics};
-pub(crate) use impulse::change;
-pub use impulse::{ConstraintImpulse, constraint_impulse};
+pub use forward_dynamics::constrained_forward_dynamics;
+pub use impulse::change;
+pub use impulse::constraint_impulse;
+pub use jacobian::constraint_jacobian;
 pub(crate) use jacobian::wrench_of;
-pub use jacobian::{ConstraintBias, ConstraintJacobian, ConstraintResidual, constraint_jacobian};
-pub use projection::{ConstraintProjection, constraint_projection};
+pub use projection::constraint_projection;

@@ -1,12 +1,12 @@
 //! The projection of forces onto those that move the robot (Modern Robotics, section 8.7).
 
-use super::delassus::{ConstraintMemory, factor, solve};
+use super::delassus::{factor, solve};
 use super::jacobian::constraint_jacobian;
 use crate::linalg::ldlt;
 use crate::model::Model;
-use crate::quantity::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, THETA, output};
+use crate::quantities::{Call, Declaration, Kernel, MATRIX, Memory, Quantity, THETA, output};
 use crate::scalar::Scalar;
-use crate::workspace::Workspace;
+use crate::workspace::{ConstraintMemory, Workspace};
 
 /// P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹, n × n by rows: Pτ = P(Mθ̈ + h) are the equations of motion without λ. Rank n − rank
 /// A.

@@ -20,7 +20,7 @@ pub(super) struct RelativeMotion<S> {
 }
 
 /// The twist of an anchor relative to a link on its way to the base, and its rate at θ̈ = 0, in the anchor's
-/// coordinates: see [`frame_acceleration`](crate::frame_acceleration).
+/// coordinates: see [`frame_acceleration`](crate::kinematics::frame_acceleration).
 struct Side<S> {
     /// The link seen from the anchor.
     T: SE3<S>,

@@ -1,8 +1,8 @@
 //! Base parameters: the combinations of a model's parameters that its forces depend on, found by rank (Gautier 1991).
 
 use super::regressor;
-use crate::kinematics::integrate;
 use crate::model::Model;
+use crate::model::integrate;
 use crate::random::Random;
 use crate::spatial::Rounded;
 use crate::workspace::Workspace;

@@ -3,7 +3,7 @@
 use super::inverse_dynamics::newton_euler;
 use crate::linalg::Vec3;
 use crate::model::{Environment, FrameId, Model};
-use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
+use crate::quantities::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use crate::workspace::Workspace;

@@ -5,7 +5,7 @@ use crate::kinematics::base_pose;
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::Model;
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, THREE, output, sized};
+use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, THREE, output, sized};
 use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use crate::workspace::Workspace;

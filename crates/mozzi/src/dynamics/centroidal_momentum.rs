@@ -2,7 +2,7 @@
 
 use super::center_of_mass::centroidal_frame;
 use super::momentum::{columns, rate_in_base};
-use crate::quantity::{
+use crate::quantities::{
     Call, DTHETA, Declaration, JACOBIAN, Kernel, Memory, Quantity, SIX, THETA, by_rows, output, sized,
 };
 use crate::scalar::Scalar;

@@ -7,7 +7,7 @@ use super::several_axes::add_moved_by_link;
 use crate::kinematics::{base_twist, joint_transforms};
 use crate::linalg::{Square, Vec3, add_transpose};
 use crate::model::Model;
-use crate::quantity::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output, symmetric};
+use crate::quantities::{Call, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, output, symmetric};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{AxisRate, CoriolisFactor, Twist, Wrench, Wrenches};
 use crate::workspace::{ByRates, Composite, Recursion, Workspace};

@@ -4,7 +4,7 @@ use super::armature::rotor_energy;
 use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::linalg::Vec3;
 use crate::model::Model;
-use crate::quantity::{Call, DTHETA, Declaration, Kernel, NUMBER, Quantity, THETA, Uses, output};
+use crate::quantities::{Call, DTHETA, Declaration, Kernel, NUMBER, Quantity, THETA, Uses, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
 use crate::workspace::Workspace;

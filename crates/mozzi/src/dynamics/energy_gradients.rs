@@ -7,7 +7,9 @@ use super::vjp::{add_products_of, from_rest};
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
 use crate::model::Model;
-use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Memory, Quantity, THETA, Uses, VECTOR, output, sized};
+use crate::quantities::{
+    Call, DTHETA, Declaration, FORCE, Kernel, Memory, Quantity, THETA, Uses, VECTOR, output, sized,
+};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 use crate::workspace::Workspace;

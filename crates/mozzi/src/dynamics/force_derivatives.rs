@@ -8,14 +8,14 @@ use super::inverse_dynamics_derivatives::fill_derivatives;
 use crate::kinematics::joint_transforms;
 use crate::linalg::{Square, Vec3};
 use crate::model::{Environment, FrameId, Model};
-use crate::quantity::{CONSTANT_VECTOR, Call, D_FORCE, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
+use crate::quantities::{CONSTANT_VECTOR, Call, D_FORCE, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Wrench;
 use crate::workspace::Workspace;
 
 /// ∂g/∂θ, n × n, row-major into `dg`; base at rest. Symmetric if the base is fixed, since g is a gradient. For a
 /// floating base the derivative is along its body twist, as in
-/// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
+/// [`InverseDynamicsDerivatives`](crate::quantities::InverseDynamicsDerivatives).
 ///
 /// Cost O(n · depth) plus n² zeros, no allocation.
 ///

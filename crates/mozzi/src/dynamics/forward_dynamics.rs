@@ -10,7 +10,7 @@ use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model};
-use crate::quantity::{ACCELERATION, Call, DTHETA, Declaration, Kernel, Quantity, TAU, THETA, Uses, VECTOR, output};
+use crate::quantities::{ACCELERATION, Call, DTHETA, Declaration, Kernel, Quantity, TAU, THETA, Uses, VECTOR, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
 use crate::workspace::{Articulated, Recursion, Workspace};

@@ -4,7 +4,7 @@ use super::armature::set_armature;
 use super::inverse_dynamics::{inverse_dynamics, newton_euler};
 use crate::linalg::{Vec3, ldlt};
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;

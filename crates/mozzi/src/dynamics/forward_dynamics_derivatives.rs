@@ -15,7 +15,7 @@ use super::spring_forces::{add_spring_forces, add_stiffness};
 use crate::kinematics::joint_transforms;
 use crate::linalg::{Square, ldlt};
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     ACCELERATION, Call, D_ACCELERATION, DTHETA, Declaration, Kernel, MATRIX, Quantity, TAU, THETA, Uses, VECTOR,
     output, symmetric,
 };
@@ -25,7 +25,7 @@ use crate::workspace::Workspace;
 pass! {
 /// θ̈ of [`forward_dynamics`](super::forward_dynamics()), and its derivatives `[∂θ̈/∂θ, ∂θ̈/∂θ̇, ∂θ̈/∂τ = M⁻¹]`, each n
 /// × n, row-major: row i is θ̈_i's, and columns are those of
-/// [`InverseDynamicsDerivatives`](super::InverseDynamicsDerivatives).
+/// [`InverseDynamicsDerivatives`](crate::quantities::InverseDynamicsDerivatives).
 ///
 /// θ̈ is computed from M, which the derivatives need as well; for robots with long limbs by articulated bodies, whose
 /// factors then give all columns without ∂τ. Inverse dynamics τ(θ, θ̇, θ̈(θ, θ̇, τ)) = τ, differentiated:

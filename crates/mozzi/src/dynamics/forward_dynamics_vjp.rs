@@ -12,7 +12,7 @@ use super::inverse_dynamics_vjp::from_transforms;
 use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     ANY, CONSTANT_VECTOR, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::{Scalar, pass};

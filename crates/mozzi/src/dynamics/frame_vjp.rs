@@ -11,7 +11,7 @@ use super::bias_forces::take_zeros;
 use super::vjp::{add_products_of, from_rest};
 use crate::kinematics::joint_transforms;
 use crate::model::{FrameId, Model};
-use crate::quantity::{
+use crate::quantities::{
     ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
     sized,
 };
@@ -45,7 +45,7 @@ pub fn frame_twist_vjp<S: Scalar + From<C>, C: Scalar>(
     workspace.vector = zero;
 }
 
-/// The gradient of wᵀa_b, a_b the [`frame_acceleration`](crate::frame_acceleration()), for a constant w:
+/// The gradient of wᵀa_b, a_b the [`frame_acceleration`](crate::kinematics::frame_acceleration()), for a constant w:
 /// `[wᵀ∂a_b/∂θ, wᵀ∂a_b/∂θ̇, wᵀ∂a_b/∂θ̈ = J_bᵀw]`, each n long; along velocities.
 ///
 /// Cost O(n), no allocation.

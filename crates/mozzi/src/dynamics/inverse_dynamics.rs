@@ -6,7 +6,7 @@ use super::several_axes::carrier_twist;
 use super::spring_forces::add_spring_forces;
 use crate::kinematics::{base_motion, joint_sines};
 use crate::model::{Environment, Model};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
+use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, FORCE, Kernel, Quantity, THETA, Uses, VECTOR, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Wrench;
 use crate::workspace::{Recursion, Workspace};
@@ -52,7 +52,7 @@ pass! {
 /// v̇ + ω × v of the origin. Link i's motion is computed from its parent's in this form by the book's equations, then
 /// converted to the frame that moves with its own origin. The wrench 𝓕_i is the same in both; the linear part of 𝒱
 /// costs nothing.
-pub(crate) fn newton_euler<S: Scalar + From<C>, C: Scalar>(
+pub fn newton_euler<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, tau: &mut [S],
 ) {

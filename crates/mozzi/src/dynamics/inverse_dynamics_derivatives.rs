@@ -9,7 +9,7 @@ use super::spring_forces::add_stiffness;
 use crate::kinematics::joint_transforms;
 use crate::linalg::{Square, Vec3};
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     Call, D_FORCE, DDTHETA, DTHETA, Declaration, Kernel, MATRIX, Quantity, THETA, Uses, output, symmetric,
 };
 use crate::scalar::{Scalar, pass};
@@ -20,10 +20,10 @@ pass! {
 /// The derivatives of [`inverse_dynamics`](super::inverse_dynamics()), `[∂τ/∂θ, ∂τ/∂θ̇, ∂τ/∂θ̈ = M]`, each n × n,
 /// row-major: row i is τ_i's.
 ///
-/// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::integrate) moves it: an entry of θ
-/// for a joint, the body twist of a floating base, in its own coordinates. Applied wrenches keep their coordinates in
-/// their frames, and {s} keeps its motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of ∂τ/∂θ̇ (the
-/// derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
+/// Column j of ∂τ/∂θ is along the j-th velocity, θ ⊕ e_j ε as [`integrate`](crate::model::integrate) moves it: an
+/// entry of θ for a joint, the body twist of a floating base, in its own coordinates. Applied wrenches keep their
+/// coordinates in their frames, and {s} keeps its motion. Springs add k to the diagonal of ∂τ/∂θ, friction d to that of
+/// ∂τ/∂θ̇ (the derivative of sgn is 0), armature to that of M. N m, N per rad, m, rad/s, ….
 ///
 /// Entries are 0 unless [`couples`](Model::couples) i and j.
 ///

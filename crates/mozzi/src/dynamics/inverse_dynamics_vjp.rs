@@ -6,7 +6,7 @@ use super::derivatives::outward_pass;
 use super::vjp::{add_products, of_base};
 use crate::kinematics::joint_transforms;
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Kernel, Quantity, THETA, Uses, VECTOR, output,
 };
 use crate::scalar::{Scalar, pass};

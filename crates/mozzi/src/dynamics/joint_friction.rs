@@ -1,7 +1,7 @@
 //! Friction in the joints.
 
 use crate::model::Model;
-use crate::quantity::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, VECTOR, output};
+use crate::quantities::{Call, DTHETA, Declaration, FORCE, Kernel, Quantity, VECTOR, output};
 use crate::scalar::Scalar;
 
 /// f(θ̇) = d θ̇ + μ sgn θ̇ of joint j at its rate, with sgn 0 = 0. Sticking is not modelled: at rest Coulomb friction

@@ -5,7 +5,7 @@ use super::composite_bodies::composite_inertias;
 use crate::kinematics::joint_transforms;
 use crate::linalg::Square;
 use crate::model::Model;
-use crate::quantity::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, symmetric};
+use crate::quantities::{Call, Declaration, INERTIA, Kernel, MATRIX, Quantity, THETA, symmetric};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
 use crate::workspace::Workspace;

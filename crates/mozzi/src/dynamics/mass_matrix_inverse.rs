@@ -3,7 +3,7 @@
 use super::mass_matrix::mass_matrix;
 use crate::linalg::ldlt;
 use crate::model::Model;
-use crate::quantity::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, symmetric};
+use crate::quantities::{Call, Declaration, Kernel, MATRIX, Quantity, THETA, symmetric};
 use crate::scalar::Scalar;
 use crate::workspace::Workspace;
 

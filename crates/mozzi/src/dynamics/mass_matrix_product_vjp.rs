@@ -6,7 +6,7 @@ use super::derivatives::outward_pass;
 use super::vjp::{add_products, from_rest, of_base};
 use crate::kinematics::joint_transforms;
 use crate::model::Model;
-use crate::quantity::{
+use crate::quantities::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, Declaration, Kernel, Memory, Quantity, THETA, VECTOR, output, sized,
 };
 use crate::scalar::Scalar;

@@ -6,7 +6,7 @@ use super::mass_matrix::mass_matrix;
 use super::spring_forces::add_spring_forces;
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     ACCELERATION, Call, DTHETA, Declaration, Kernel, Memory, Quantity, TAU, THETA, Uses, VECTOR, output, sized,
 };
 use crate::scalar::{Scalar, pass};

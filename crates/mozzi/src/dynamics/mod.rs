@@ -20,38 +20,38 @@
 mod armature;
 mod base_parameters;
 mod base_rates;
-mod bias_forces;
-mod center_of_mass;
-mod centroidal_momentum;
+pub(crate) mod bias_forces;
+pub(crate) mod center_of_mass;
+pub(crate) mod centroidal_momentum;
 mod closed_form;
 mod composite_bodies;
-mod coriolis_matrix;
+pub(crate) mod coriolis_matrix;
 mod derivatives;
-mod energy;
-mod energy_gradients;
-mod force_derivatives;
-mod forward_dynamics;
-mod forward_dynamics_by_inverse_dynamics;
-mod forward_dynamics_derivatives;
-mod forward_dynamics_vjp;
-mod frame_vjp;
-mod inverse_dynamics;
-mod inverse_dynamics_derivatives;
-mod inverse_dynamics_vjp;
-mod joint_friction;
+pub(crate) mod energy;
+pub(crate) mod energy_gradients;
+pub(crate) mod force_derivatives;
+pub(crate) mod forward_dynamics;
+pub(crate) mod forward_dynamics_by_inverse_dynamics;
+pub(crate) mod forward_dynamics_derivatives;
+pub(crate) mod forward_dynamics_vjp;
+pub(crate) mod frame_vjp;
+pub(crate) mod inverse_dynamics;
+pub(crate) mod inverse_dynamics_derivatives;
+pub(crate) mod inverse_dynamics_vjp;
+pub(crate) mod joint_friction;
 mod long_limbs;
-mod mass_matrix;
-mod mass_matrix_inverse;
-mod mass_matrix_product_vjp;
-mod mass_matrix_solve;
-mod momentum;
-mod momentum_vjp;
-mod parameter_vjp;
-mod regressor;
+pub(crate) mod mass_matrix;
+pub(crate) mod mass_matrix_inverse;
+pub(crate) mod mass_matrix_product_vjp;
+pub(crate) mod mass_matrix_solve;
+pub(crate) mod momentum;
+pub(crate) mod momentum_vjp;
+pub(crate) mod parameter_vjp;
+pub(crate) mod regressor;
 mod several_axes;
 mod siblings;
-mod spring_forces;
-mod task_space_dynamics;
+pub(crate) mod spring_forces;
+pub(crate) mod task_space_dynamics;
 mod vjp;
 
 #[cfg(test)]
@@ -59,44 +59,32 @@ pub(crate) mod tests;
 
 pub(crate) use armature::set_armature;
 pub use base_parameters::BaseParameters;
-pub use bias_forces::{
-    BiasForces, GravityForces, TipForces, VelocityProduct, bias_forces, gravity_forces, tip_forces, velocity_product,
-};
-pub use center_of_mass::{
-    CenterOfMass, CenterOfMassAcceleration, CenterOfMassJacobian, CenterOfMassVelocity, center_of_mass,
-};
-pub use centroidal_momentum::{CentroidalMomentumBias, CentroidalMomentumMatrix};
+pub use bias_forces::{bias_forces, gravity_forces, tip_forces, velocity_product};
+pub use center_of_mass::center_of_mass;
 pub use closed_form::{ClosedForm, Entry};
 pub(crate) use composite_bodies::composite_inertias;
-pub use coriolis_matrix::{CoriolisMatrix, MassMatrixRate, coriolis_matrix, mass_matrix_rate};
-pub use energy::{KineticEnergy, PotentialEnergy, kinetic_energy, potential_energy};
-pub use energy_gradients::{EnergyGradients, energy_gradients};
-pub use force_derivatives::{
-    GravityForcesDerivative, MassMatrixProductDerivative, TipForcesDerivative, gravity_forces_derivative,
-    mass_matrix_product_derivative, tip_forces_derivative,
-};
-pub use forward_dynamics::{ForwardDynamics, forward_dynamics};
-pub use forward_dynamics_by_inverse_dynamics::ForwardDynamicsByInverseDynamics;
-pub use forward_dynamics_derivatives::{ForwardDynamicsDerivatives, forward_dynamics_derivatives};
-pub use forward_dynamics_vjp::{ForwardDynamicsVjp, forward_dynamics_vjp};
-pub use frame_vjp::{FrameAccelerationVjp, FrameTwistVjp, frame_acceleration_vjp, frame_twist_vjp};
-pub(crate) use inverse_dynamics::newton_euler;
-pub use inverse_dynamics::{InverseDynamics, inverse_dynamics};
-pub use inverse_dynamics_derivatives::{InverseDynamicsDerivatives, inverse_dynamics_derivatives};
-pub use inverse_dynamics_vjp::{InverseDynamicsVjp, inverse_dynamics_vjp};
-pub use joint_friction::{JointFriction, joint_friction};
+pub use coriolis_matrix::{coriolis_matrix, mass_matrix_rate};
+pub use energy::{kinetic_energy, potential_energy};
+pub use energy_gradients::energy_gradients;
+pub use force_derivatives::{gravity_forces_derivative, mass_matrix_product_derivative, tip_forces_derivative};
+pub use forward_dynamics::forward_dynamics;
+pub use forward_dynamics_derivatives::forward_dynamics_derivatives;
+pub use forward_dynamics_vjp::forward_dynamics_vjp;
+pub use frame_vjp::{frame_acceleration_vjp, frame_twist_vjp};
+pub use inverse_dynamics::inverse_dynamics;
+pub use inverse_dynamics::newton_euler;
+pub use inverse_dynamics_derivatives::inverse_dynamics_derivatives;
+pub use inverse_dynamics_vjp::inverse_dynamics_vjp;
+pub use joint_friction::joint_friction;
 pub(crate) use mass_matrix::fill_mass_matrix;
-pub use mass_matrix::{MassMatrix, mass_matrix};
-pub use mass_matrix_inverse::{MassMatrixInverse, mass_matrix_inverse};
-pub use mass_matrix_product_vjp::{MassMatrixProductVjp, mass_matrix_product_vjp};
-pub use mass_matrix_solve::{ForwardDynamicsByMassMatrix, forward_dynamics_by_mass_matrix};
-pub use momentum::{Momentum, MomentumRate, momentum, momentum_matrix, momentum_rate, total_inertia};
-pub use momentum_vjp::{MomentumRateVjp, MomentumVjp, momentum_rate_vjp, momentum_vjp};
-pub use parameter_vjp::{
-    ForwardDynamicsParameterVjp, InverseDynamicsParameterVjp, forward_dynamics_parameter_vjp,
-    inverse_dynamics_parameter_vjp,
-};
-pub use regressor::{EnergyRegressors, Regressor, energy_regressors, regressor};
-pub(crate) use spring_forces::add_spring_forces;
-pub use spring_forces::{SpringForces, spring_forces};
-pub use task_space_dynamics::{TaskSpaceDynamics, task_space_dynamics};
+pub use mass_matrix::mass_matrix;
+pub use mass_matrix_inverse::mass_matrix_inverse;
+pub use mass_matrix_product_vjp::mass_matrix_product_vjp;
+pub use mass_matrix_solve::forward_dynamics_by_mass_matrix;
+pub use momentum::{momentum, momentum_matrix, momentum_rate, total_inertia};
+pub use momentum_vjp::{momentum_rate_vjp, momentum_vjp};
+pub use parameter_vjp::{forward_dynamics_parameter_vjp, inverse_dynamics_parameter_vjp};
+pub use regressor::{energy_regressors, regressor};
+pub use spring_forces::add_spring_forces;
+pub use spring_forces::spring_forces;
+pub use task_space_dynamics::task_space_dynamics;

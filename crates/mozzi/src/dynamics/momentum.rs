@@ -6,7 +6,7 @@ use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
+use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{SpatialInertia, Twist, Wrench};
 use crate::workspace::{Composite, Recursion, Workspace};

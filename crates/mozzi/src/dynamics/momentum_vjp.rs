@@ -9,7 +9,7 @@ use super::vjp::{add_products, from_rest, in_base};
 use crate::kinematics::joint_transforms;
 use crate::linalg::Vec3;
 use crate::model::Model;
-use crate::quantity::{
+use crate::quantities::{
     ANY, CONSTANT_SIX, Call, DDTHETA, DTHETA, Declaration, Kernel, Memory, Of, Quantity, THETA, VECTOR, output, six,
     sized,
 };

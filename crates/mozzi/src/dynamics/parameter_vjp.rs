@@ -22,7 +22,7 @@ use super::vjp::of_base;
 use crate::kinematics::{base_pose, joint_transforms};
 use crate::linalg::Vec3;
 use crate::model::{Environment, Model};
-use crate::quantity::{
+use crate::quantities::{
     ANY, CONSTANT_VECTOR, Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Memory, Output, Quantity, TAU, THETA, Uses,
     output, sized,
 };

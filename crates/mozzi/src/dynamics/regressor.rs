@@ -7,7 +7,7 @@ use crate::kinematics::{base_pose, joint_transforms, link_twists};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
 use crate::model::{Environment, Freedom, JOINT_PARAMETERS, Model, Spring};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, Uses, output};
+use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, Dim, Kernel, Quantity, THETA, Uses, output};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{SpatialInertia, Twist};
 use crate::workspace::{Recursion, Workspace};
@@ -79,7 +79,7 @@ pub(super) fn joint_entries<S: Scalar + From<C>, C: Scalar>(
     mut add: impl FnMut(usize, usize, S),
 ) {
     for (k, place) in model.places().iter().enumerate() {
-        let column = 10 * model.bodies().count() + JOINT_PARAMETERS * k;
+        let column = model.parameters_of_joint(k).start;
         for j in place.velocities() {
             add(j, column, ddtheta[j]);
             add(j, column + 1, dtheta[j]);

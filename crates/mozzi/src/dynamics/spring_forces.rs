@@ -1,7 +1,7 @@
 //! Springs in the joints.
 
 use crate::model::Model;
-use crate::quantity::{Call, Declaration, FORCE, Kernel, Quantity, THETA, VECTOR, output};
+use crate::quantities::{Call, Declaration, FORCE, Kernel, Quantity, THETA, VECTOR, output};
 use crate::scalar::Scalar;
 
 /// f_s(θ) = k(θ − θ₀) of each velocity, N m or N: the forces that hold the joints against their springs. θ is not
@@ -22,7 +22,7 @@ pub fn spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[
 
 /// Adds f_s to a force.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
+pub fn add_spring_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], tau: &mut [S]) {
     for spring in &model.springs {
         spring.add_force(theta, tau);
     }

@@ -5,7 +5,7 @@ use super::mass_matrix::mass_matrix;
 use crate::kinematics::{body_jacobian, body_jacobian_rate, space_jacobian, space_jacobian_rate, twist_of};
 use crate::linalg::ldlt;
 use crate::model::{Environment, Model, Task, TaskFrame, TaskMemory};
-use crate::quantity::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Of, Quantity, THETA, Uses, output, symmetric};
+use crate::quantities::{Call, DTHETA, Declaration, Dim, Kernel, Memory, Of, Quantity, THETA, Uses, output, symmetric};
 use crate::scalar::{Scalar, pass};
 use crate::workspace::Workspace;
 

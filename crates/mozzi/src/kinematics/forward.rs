@@ -3,7 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model};
-use crate::quantity::{Call, Declaration, Dim, Kernel, Of, Quantity, THETA, output, sized};
+use crate::quantities::{Call, Declaration, Dim, Kernel, Of, Quantity, THETA, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::workspace::Workspace;
 

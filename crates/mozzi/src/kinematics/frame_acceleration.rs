@@ -1,7 +1,7 @@
 //! The classical acceleration of a frame.
 
 use crate::model::{FrameId, Model};
-use crate::quantity::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
+use crate::quantities::{Call, DDTHETA, DTHETA, Declaration, Kernel, Of, Quantity, SIX, THETA, output};
 use crate::scalar::Scalar;
 use crate::spatial::Twist;
 

@@ -3,7 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model};
-use crate::quantity::{Call, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
+use crate::quantities::{Call, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::{Twist, Wrench};
 use alloc::vec::Vec;
@@ -42,8 +42,9 @@ impl Jacobian<f64> {
     }
 }
 
+/// J θ̇, the twist.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
+pub fn twist_of<S: Scalar>(columns: &[Twist<S>], dtheta: &[S]) -> Twist<S> {
     let mut V = Twist::zero();
     for (&column, &rate) in columns.iter().zip(dtheta) {
         V += column * rate;

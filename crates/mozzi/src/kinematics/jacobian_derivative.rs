@@ -3,7 +3,7 @@
 use super::base_pose;
 use crate::lie::SE3;
 use crate::model::{FrameId, Model};
-use crate::quantity::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, THETA, by_rows, output, sized};
+use crate::quantities::{Call, Declaration, JACOBIANS, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
 use crate::workspace::Workspace;

@@ -2,7 +2,7 @@
 
 use super::{base_pose, base_twist};
 use crate::model::{FrameId, Model};
-use crate::quantity::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
+use crate::quantities::{Call, DTHETA, Declaration, JACOBIAN, Kernel, Of, Quantity, THETA, by_rows, output, sized};
 use crate::scalar::{Scalar, pass};
 use crate::spatial::Twist;
 use crate::workspace::Workspace;

@@ -1,12 +1,12 @@
 //! M = LᵀDL along the tree's sparsity: no pivoting, no square root (Featherstone 2008, section 6.5).
 
-pub(crate) use super::pattern::Pattern;
+pub use super::pattern::Pattern;
 use crate::scalar::Scalar;
 
 /// Overwrites the lower triangle of M (row-major, n × n) with L (unit diagonal, not stored) and D on the diagonal.
 /// `pivots` receives D too: the caller checks that they are positive.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]) {
+pub fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]) {
     let n = pattern.len();
     for k in (0..n).rev() {
         let (above, row) = M.split_at_mut(k * n);
@@ -26,7 +26,7 @@ pub(crate) fn factor<S: Scalar>(pattern: &Pattern, M: &mut [S], pivots: &mut [S]
 
 /// Overwrites b with x, where LᵀDLx = b.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
+pub fn solve<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S]) {
     solve_transposed_all(pattern, L, b);
     solve_rest(pattern, L, b);
 }
@@ -39,7 +39,7 @@ pub(crate) fn solve_transposed_all<S: Scalar>(pattern: &Pattern, L: &[S], b: &mu
 
 /// The same if b is zero outside these rows, listed from the last; with each row the list must contain its ancestors.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn solve_transposed<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S], rows: impl Iterator<Item = usize>) {
+pub fn solve_transposed<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S], rows: impl Iterator<Item = usize>) {
     let n = pattern.len();
     let b = &mut b[..n];
     for k in rows {

@@ -1,7 +1,7 @@
 //! Small vectors and matrices over any [`Scalar`], and the sparse factorisation of the mass matrix.
 
 pub(crate) mod dense_ldlt;
-pub(crate) mod ldlt;
+pub mod ldlt;
 mod mat3;
 mod pattern;
 mod skew;

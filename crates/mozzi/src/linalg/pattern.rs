@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 /// The elimination tree: row k of L is nonzero only in the columns of k's ancestors.
 #[derive(Clone, Debug)]
-pub(crate) struct Pattern {
+pub struct Pattern {
     /// `usize::MAX` for a root.
     pub(super) parent: Vec<usize>,
     /// One past the last descendant of k; k + 1 if it has none.
@@ -17,12 +17,12 @@ impl Pattern {
     /// From the number of the base's own rows, which couple with all, and from each moving link's parent slot and row,
     /// base to tips. In a plain tree the ancestors are the tree's; a mimic joint couples its source joint's row with
     /// another path, and eliminating that row couples both paths.
-    pub fn new(base: usize, n: usize, links: impl ExactSizeIterator<Item = (usize, usize)>) -> Self {
+    pub(crate) fn new(base: usize, n: usize, links: impl ExactSizeIterator<Item = (usize, usize)>) -> Self {
         Self::coupled(base, n, links, core::iter::empty::<[usize; 0]>())
     }
 
     /// The same with further lists of rows; the rows of each list are all coupled with each other.
-    pub fn coupled<L: IntoIterator<Item = usize>>(
+    pub(crate) fn coupled<L: IntoIterator<Item = usize>>(
         base: usize,
         n: usize,
         links: impl ExactSizeIterator<Item = (usize, usize)>,

@@ -1,12 +1,13 @@
 //! From a description to the screw normal form.
 
+use super::ConfigurationSpace;
 use super::description::{self, Joint, JointKind};
+use super::frame::last_frame;
 use super::places::names_of;
 use super::tie::ties;
 use super::{
     Base, Description, Error, Frame, FrameId, Freedom, Link, Model, Motion, Place, Rotor, Severity, Spring, Structure,
 };
-use crate::kinematics::ConfigurationSpace;
 use crate::lie::{SE3, SO3};
 use crate::linalg::{Mat3, Vec3, ldlt::Pattern};
 use crate::scalar::Real;
@@ -95,8 +96,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         description.links.iter().map(|link| &link.name).chain(description.frames.iter().map(|frame| &frame.name));
     let end_effector = match &description.end_effector {
         Some(name) => frame_names.into_iter().position(|known| known == name).map(FrameId),
-        None if leaves.len() == 1 => leaves.first().copied(),
-        None => None,
+        None => last_frame(&leaves, &frames, |leaf| description.links[leaf].name.as_str()),
     };
 
     let (joints, places) = couple(description, &moving_joints, &mut links);

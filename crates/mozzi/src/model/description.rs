@@ -164,6 +164,8 @@ pub struct Limits {
     pub velocity: Option<f64>,
     /// N m or N.
     pub effort: Option<f64>,
+    /// rad/s² or m/s²: the smaller of URDF 1.2's `acceleration` and `deceleration`.
+    pub acceleration: Option<f64>,
 }
 
 /// The coupling of a mimic joint: θ = ratio · θ_source + offset.

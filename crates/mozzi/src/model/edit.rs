@@ -110,8 +110,8 @@ impl Model<f64> {
     /// other joints.
     ///
     /// # Errors
-    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint, a ball or a free joint, or a position that is
-    /// not finite.
+    /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint, a fixed, ball or free joint, or a position
+    /// that is not finite.
     pub fn with_locked_joints(&self, positions: &[(&str, f64)]) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         for &(name, position) in positions {
@@ -129,9 +129,9 @@ impl Model<f64> {
                 return Err(Error::BadArgument { what: "the position to lock at", found, expected: "a finite number" });
             }
             let kind = robot.joints[i].kind;
-            if matches!(kind, JointKind::Ball(_) | JointKind::Free) {
+            if !matches!(kind, JointKind::Screw(_)) {
                 let found = alloc::format!("`{name}`, a {} joint", kind.name());
-                let expected = "a joint of one axis";
+                let expected = "a joint of one axis, which moves";
                 return Err(Error::BadArgument { what: "the joint to lock", found, expected });
             }
             // mimic joints of mimic joints too: each round locks those whose source joint was locked in the one before

@@ -1,6 +1,7 @@
 //! Errors, with the numbers that caused them.
 
 use super::check::{Problem, Severity};
+use crate::spelling::nearest;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{self, Write};
@@ -24,24 +25,6 @@ pub enum Error {
         residual: f64,
         /// The configuration or state that was searched for.
         what: &'static str,
-    },
-    /// A simulation's start violates a constraint.
-    OpenStart {
-        /// The constraint.
-        constraint: String,
-        /// By how much, rad or m, or their rates.
-        residual: f64,
-        /// Position or velocity.
-        what: &'static str,
-    },
-    /// A simulation cannot keep a constraint.
-    Opened {
-        /// The constraint that is violated most.
-        constraint: String,
-        /// By how much.
-        residual: f64,
-        /// When, s.
-        time: f64,
     },
     /// The motors cannot produce the motion.
     Underactuated {
@@ -116,63 +99,10 @@ pub enum Error {
         /// The positions.
         theta: Vec<f64>,
     },
-    /// The simulated state became infinite, NaN or too large.
-    Diverged {
-        /// "theta", "dtheta" or "ddtheta".
-        quantity: &'static str,
-        /// The joint.
-        joint: String,
-        /// Infinite, NaN, or so large (10¹⁵⁰) that energies overflow.
-        value: f64,
-        /// Steps are counted from 1; 0 is the start.
-        step: usize,
-        /// Seconds.
-        time: f64,
-        /// Seconds.
-        step_size: f64,
-    },
-    /// A simulation takes steps so short that it would practically never end.
-    Stalled {
-        /// Seconds.
-        time: f64,
-        /// The joint whose motion requires the shortest steps.
-        joint: String,
-        /// The steps, their reason, and a remedy.
-        cause: String,
-    },
-    /// A joint reaches a limit that is respected, by a method of smooth motion, which has no stops.
-    StopActs {
-        /// The joint.
-        joint: String,
-        /// rad or m.
-        limit: f64,
-        /// Seconds.
-        time: f64,
-        /// The method.
-        method: &'static str,
-    },
-    /// The iteration of an implicit step does not converge.
-    NoConvergence {
-        /// The joint whose velocity changes most between iterations.
-        joint: String,
-        /// Seconds.
-        time: f64,
-        /// Seconds.
-        step: f64,
-        /// Iterations.
-        iterations: usize,
-    },
     /// The moving links have no mass.
     NoMass {
         /// kg.
         mass: f64,
-    },
-    /// An invalid event condition of a simulation.
-    Condition {
-        /// The condition.
-        text: String,
-        /// What is wrong with it, and what was expected.
-        problem: String,
     },
     /// An argument outside its domain.
     BadArgument {
@@ -193,16 +123,6 @@ impl fmt::Display for Error {
                 f,
                 "constraint `{constraint}` cannot be satisfied: {what} does; the nearest violates it by {residual:.3e}"
             ),
-            Error::OpenStart { constraint, residual, what } => write!(
-                f,
-                "the start has {what} that violates constraint `{constraint}` by {residual:.3e}, expected at most 1e-6; `assemble` \
-         closes positions, `assemble_velocities` or `constraint_impulse` velocities"
-            ),
-            Error::Opened { constraint, residual, time } => write!(
-                f,
-                "constraint `{constraint}` cannot be closed at t = {time} s: {residual:.3e} rad or m are left; the step may be too \
-         long, or the mechanism at the end of its reach"
-            ),
             Error::Underactuated { joint, force, motors, freedom } => write!(
                 f,
                 "no motor drives `{joint}` ({motors} motors for {freedom} degrees of freedom): the motion needs {force:.3e} N m \
@@ -221,10 +141,11 @@ impl fmt::Display for Error {
                 write!(f, "there is no state `{name}`; this robot has {}", names(known))
             }
             Error::NoSuchQuantity { name, known } => {
-                write!(f, "there is no quantity `{name}`; expected one of {}", all_names(known))
+                let near = nearest(name, known, 3);
+                write!(f, "there is no quantity `{name}`; the nearest of {} are {}", known.len(), names(&near))
             }
             Error::NoEndEffector { leaves } => {
-                write!(f, "the end effector must be named: this robot ends in {}", names(leaves))
+                write!(f, "the end effector must be named: this robot ends in {}", first_names(leaves, 6))
             }
             Error::SingularMassMatrix { joint, pivot, diagonal, theta } => write!(
                 f,
@@ -235,25 +156,7 @@ impl fmt::Display for Error {
                 f,
                 "the task is singular at θ = {theta:?}: the singular values of its Jacobian are {singular_values:?}, the smallest below {tolerance:e}"
             ),
-            Error::Diverged { quantity, joint, value, step, time, step_size } => write!(
-                f,
-                "the simulation diverged: {quantity} of joint `{joint}` is {value:e} in step {step}, at t = {time} s, with steps of {step_size} s; \
-         a smaller step may help"
-            ),
-            Error::Stalled { time, joint, cause } => {
-                write!(f, "the simulation does not advance at t = {time} s, because of joint `{joint}`: {cause}")
-            }
-            Error::StopActs { joint, limit, time, method } => write!(
-                f,
-                "joint `{joint}` reaches its limit {limit} at t = {time} s, and {method} has no stops: `moreau` or `auto` has"
-            ),
-            Error::NoConvergence { joint, time, step, iterations } => write!(
-                f,
-                "the implicit step of {step} s at t = {time} s did not converge in {iterations} iterations at joint `{joint}`, which is stiff, \
-         or jumps; a smaller step or smooth friction may help"
-            ),
             Error::NoMass { mass } => write!(f, "the robot's total mass is {mass} kg; the centre of mass is undefined"),
-            Error::Condition { text, problem } => write!(f, "`{text}`{problem}"),
             Error::BadArgument { what, found, expected } => write!(f, "{what} is {found}, expected {expected}"),
         }
     }
@@ -270,19 +173,20 @@ fn list(problems: &[Problem]) -> String {
     })
 }
 
-fn all_names(names: &[&str]) -> String {
-    names.join(", ")
+pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {
+    first_names(names, 20)
 }
 
-pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {
+/// At most this many names; the others are counted.
+fn first_names<T: AsRef<str>>(names: &[T], most: usize) -> String {
     let mut text = String::new();
-    for (k, name) in names.iter().take(20).enumerate() {
+    for (k, name) in names.iter().take(most).enumerate() {
         let _ = write!(text, "{}`{}`", if k == 0 { "" } else { ", " }, name.as_ref());
     }
     match names.len() {
         0 => text.push_str("none"),
-        more if more > 20 => {
-            let _ = write!(text, " and {} more", more - 20);
+        more if more > most => {
+            let _ = write!(text, " and {} more", more - most);
         }
         _ => {}
     }

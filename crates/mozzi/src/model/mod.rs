@@ -1,10 +1,13 @@
 //! The robot: the content of its file ([`Description`]), and the constants of the kernels ([`Model`]).
 
+mod arguments;
 mod base;
 mod bounds;
 mod build;
 mod check;
+mod configuration;
 mod constraint;
+mod contact_point;
 mod couples;
 pub mod description;
 mod edit;
@@ -26,7 +29,6 @@ mod tie;
 mod traverse;
 mod variation;
 
-use crate::kinematics::ConfigurationSpace;
 use crate::linalg::{Vec3, ldlt::Pattern};
 use crate::scalar::Scalar;
 use crate::spatial::SpatialInertia;
@@ -34,9 +36,12 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+pub(crate) use arguments::{check_length, check_unit};
 pub use base::Base;
 pub use bounds::Bounds;
 pub use check::{Element, Problem, Severity};
+pub use configuration::{ConfigurationSpace, difference, integrate, rate_of_logarithm, seed_direction};
+pub use contact_point::{ContactPoint, Support};
 pub use description::Description;
 pub use environment::Environment;
 pub use error::Error;
@@ -136,6 +141,36 @@ impl<C: Scalar> Model<C> {
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn nq(&self) -> usize {
         self.structure.names[0].len()
+    }
+
+    /// Rotor inertia of each of the n velocities as felt at the joint, mimic joints included: Σ ratio² · armature, kg
+    /// m² or kg.
+    pub fn armature(&self) -> &[C] {
+        &self.armature
+    }
+
+    /// Viscous friction of each velocity likewise: Σ ratio² · d, N m s/rad or N s/m.
+    pub fn damping(&self) -> &[C] {
+        &self.damping
+    }
+
+    /// Coulomb friction of each velocity likewise: Σ |ratio| · μ, N m or N.
+    pub fn friction(&self) -> &[C] {
+        &self.friction
+    }
+
+    /// Stiffness of each velocity of joints of one freedom likewise: Σ ratio² · k, N m/rad or N/m.
+    pub fn stiffness(&self) -> Vec<C> {
+        let mut k = alloc::vec![C::zero(); self.n()];
+        for spring in self.springs.iter().filter(|spring| spring.place.freedom == Freedom::One) {
+            k[spring.place.j] += spring.stiffness;
+        }
+        k
+    }
+
+    /// Which entries of M and of its factors are not zero.
+    pub fn pattern(&self) -> &Pattern {
+        &self.structure.pattern
     }
 
     /// The mass of the moving links and of a floating base, kg.
@@ -264,10 +299,13 @@ impl<C: Scalar> Model<C> {
         }
     }
 
-    /// Panics unless each slice is as long as it should be: a wrong length is a bug of the caller.
+    /// Asserts that θ and slices of one number per velocity have their lengths: a wrong one is a bug of the caller.
+    ///
+    /// # Panics
+    /// If one has not.
     #[cfg_attr(not(debug_assertions), inline(always))]
     #[track_caller]
-    pub(crate) fn assert_lengths<const K: usize>(&self, positions: usize, velocities: [usize; K]) {
+    pub fn assert_lengths<const K: usize>(&self, positions: usize, velocities: [usize; K]) {
         assert!(positions == self.nq(), "theta has {positions} entries, expected {}", self.nq());
         for found in velocities {
             assert!(

@@ -7,6 +7,7 @@ use crate::spatial::SpatialInertia;
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// Names of a body's parameters, in the order of
 /// [`SpatialInertia::to_parameters`](crate::SpatialInertia::to_parameters).
@@ -20,6 +21,12 @@ impl<C: Scalar> Model<C> {
     /// rotor.
     pub fn parameter_count(&self) -> usize {
         10 * self.bodies().count() + JOINT_PARAMETERS * self.places().len() + self.rotors.len()
+    }
+
+    /// Where the armature, damping, Coulomb friction, stiffness and preload of independent joint k are in π.
+    pub fn parameters_of_joint(&self, k: usize) -> Range<usize> {
+        let first = 10 * self.bodies().count() + JOINT_PARAMETERS * k;
+        first..first + JOINT_PARAMETERS
     }
 
     /// π, the parameters in which τ and the energies are linear:

@@ -54,12 +54,7 @@ impl Pivots<'_> {
     /// # Errors
     /// [`Error::SingularMassMatrix`] with the outermost joint whose pivot fails: it spoils the pivots closer to the
     /// base.
-    pub(crate) fn check(
-        &self,
-        model: &Model,
-        theta: &[f64],
-        mass_matrix: impl FnOnce() -> Vec<f64>,
-    ) -> Result<(), Error> {
+    pub fn check(&self, model: &Model, theta: &[f64], mass_matrix: impl FnOnce() -> Vec<f64>) -> Result<(), Error> {
         if self.are_clear() || theta.iter().any(|x| !x.is_finite()) {
             return Ok(());
         }

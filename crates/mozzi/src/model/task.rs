@@ -53,7 +53,7 @@ impl Task<'_> {
     }
 }
 
-/// Memory of [`task_space_dynamics`](crate::task_space_dynamics) for k rows, and its intermediate results.
+/// Memory of [`task_space_dynamics`](crate::dynamics::task_space_dynamics) for k rows, and its intermediate results.
 #[derive(Clone, Debug)]
 pub struct TaskMemory<S = f64> {
     /// J, k × n by rows.

@@ -63,7 +63,8 @@ impl Model<f64> {
     /// ```
     /// use mozzi::model::description::{Joint, JointKind};
     /// use mozzi::model::Variation;
-    /// use mozzi::{Description, Dual, SE3, ScrewAxis, SpatialInertia, Vec3, Workspace, inverse_dynamics};
+    /// use mozzi::{Description, Dual, SE3, ScrewAxis, SpatialInertia, Vec3, Workspace};
+    /// use mozzi::dynamics::inverse_dynamics;
     /// // a pendulum of 2 kg at 0.7 m from its pivot, on a bracket
     /// let axis = JointKind::Screw(ScrewAxis::new([0.0, -1.0, 0.0], [0.0; 3])?);
     /// let pendulum = Description::new("pendulum")

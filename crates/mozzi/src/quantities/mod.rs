@@ -17,12 +17,23 @@
 //! ```
 
 mod compute;
+mod declaration;
+mod kernel;
+mod memory;
 mod query;
+mod subject;
 
-pub use crate::quantity::*;
-pub(crate) use crate::quantity::{Entry, Inputs, Outputs, evaluate};
 pub(crate) use compute::are_clear;
+pub(crate) use declaration::*;
+pub use declaration::{Declaration, Dim, INPUTS, Input, Of, Output, Uses};
+#[doc(hidden)]
+pub use kernel::{Call, Kernel};
+pub(crate) use kernel::{Entry, Inputs, Outputs, evaluate};
+pub use kernel::{MOST_INPUTS, MOST_OUTPUTS, Quantity};
+pub use memory::Memory;
+pub(crate) use memory::{by_rows, six, sized};
 pub use query::{ALIASES, Query};
+pub use subject::Subject;
 
 use crate::model::{Environment, Model};
 use crate::scalar::Scalar;
@@ -50,16 +61,47 @@ macro_rules! quantities {
     };
 }
 
-mod kernels {
-    pub use crate::constraints::*;
-    pub use crate::dynamics::*;
-    pub use crate::kinematics::*;
-}
-
-macro_rules! exports {
-    ($($Q:ident)*) => { pub use kernels::{$($Q),*}; };
-}
-quantities!(exports);
+pub use crate::constraints::{
+    forward_dynamics::ConstrainedForwardDynamics,
+    impulse::ConstraintImpulse,
+    jacobian::{ConstraintBias, ConstraintJacobian, ConstraintResidual},
+    projection::ConstraintProjection,
+};
+pub use crate::dynamics::{
+    bias_forces::{BiasForces, GravityForces, TipForces, VelocityProduct},
+    center_of_mass::{CenterOfMass, CenterOfMassAcceleration, CenterOfMassJacobian, CenterOfMassVelocity},
+    centroidal_momentum::{CentroidalMomentumBias, CentroidalMomentumMatrix},
+    coriolis_matrix::{CoriolisMatrix, MassMatrixRate},
+    energy::{KineticEnergy, PotentialEnergy},
+    energy_gradients::EnergyGradients,
+    force_derivatives::{GravityForcesDerivative, MassMatrixProductDerivative, TipForcesDerivative},
+    forward_dynamics::ForwardDynamics,
+    forward_dynamics_by_inverse_dynamics::ForwardDynamicsByInverseDynamics,
+    forward_dynamics_derivatives::ForwardDynamicsDerivatives,
+    forward_dynamics_vjp::ForwardDynamicsVjp,
+    frame_vjp::{FrameAccelerationVjp, FrameTwistVjp},
+    inverse_dynamics::InverseDynamics,
+    inverse_dynamics_derivatives::InverseDynamicsDerivatives,
+    inverse_dynamics_vjp::InverseDynamicsVjp,
+    joint_friction::JointFriction,
+    mass_matrix::MassMatrix,
+    mass_matrix_inverse::MassMatrixInverse,
+    mass_matrix_product_vjp::MassMatrixProductVjp,
+    mass_matrix_solve::ForwardDynamicsByMassMatrix,
+    momentum::{Momentum, MomentumRate},
+    momentum_vjp::{MomentumRateVjp, MomentumVjp},
+    parameter_vjp::{ForwardDynamicsParameterVjp, InverseDynamicsParameterVjp},
+    regressor::{EnergyRegressors, Regressor},
+    spring_forces::SpringForces,
+    task_space_dynamics::TaskSpaceDynamics,
+};
+pub use crate::kinematics::{
+    forward::{ForwardKinematics, FramePoses},
+    frame_acceleration::FrameAcceleration,
+    jacobian::{BodyJacobian, SpaceJacobian},
+    jacobian_derivative::{BodyJacobianDerivative, SpaceJacobianDerivative},
+    jacobian_rate::{BodyJacobianRate, SpaceJacobianRate},
+};
 
 /// The declarations, in the order of the list.
 pub const LIST: &[Declaration] = {

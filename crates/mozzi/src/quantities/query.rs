@@ -1,39 +1,86 @@
 //! A quantity with the frame, task or point that it refers to.
 
 use super::{LIST, place_of};
-use crate::api::check_length;
 use crate::linalg::Vec3;
-use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame};
-use crate::quantity::{Declaration, Dim, Of, Quantity, Subject};
+use crate::model::{Environment, Error, FrameId, Model, Task, TaskFrame, check_length};
+use crate::quantities::{Declaration, Dim, Of, Quantity, Subject};
 use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// Names of quantities besides their own: the book's symbols, and those of Featherstone and of Pinocchio.
-pub const ALIASES: [(&str, &str); 22] = [
+/// Names of quantities besides their own: the book's symbols, Featherstone's names, and Pinocchio's.
+pub const ALIASES: &[(&str, &str)] = &[
     ("M", "mass_matrix"),
     ("crba", "mass_matrix"),
+    ("HandC", "mass_matrix"),
+    ("inertia_matrix", "mass_matrix"),
     ("M_inv", "mass_matrix_inverse"),
+    ("Minv", "mass_matrix_inverse"),
+    ("computeMinverse", "mass_matrix_inverse"),
     ("dM", "mass_matrix_rate"),
     ("C", "coriolis_matrix"),
+    ("coriolis", "coriolis_matrix"),
+    ("computeCoriolisMatrix", "coriolis_matrix"),
     ("c", "velocity_product"),
     ("g", "gravity_forces"),
+    ("gravity", "gravity_forces"),
+    ("gravity_torques", "gravity_forces"),
+    ("computeGeneralizedGravity", "gravity_forces"),
     ("h", "bias_forces"),
     ("nle", "bias_forces"),
+    ("bias", "bias_forces"),
+    ("nonLinearEffects", "bias_forces"),
     ("tau", "inverse_dynamics"),
+    ("torque", "inverse_dynamics"),
+    ("torques", "inverse_dynamics"),
     ("rnea", "inverse_dynamics"),
     ("id", "inverse_dynamics"),
     ("ddtheta", "forward_dynamics"),
+    ("qdd", "forward_dynamics"),
     ("aba", "forward_dynamics"),
     ("fd", "forward_dynamics"),
+    ("FDab", "forward_dynamics"),
+    ("FDcrb", "forward_dynamics_by_mass_matrix"),
+    ("friction", "joint_friction"),
+    ("kinetic", "kinetic_energy"),
+    ("potential", "potential_energy"),
     ("T", "forward_kinematics"),
+    ("T_sb", "forward_kinematics"),
     ("fk", "forward_kinematics"),
+    ("pose", "forward_kinematics"),
+    ("J", "body_jacobian"),
     ("J_b", "body_jacobian"),
-    ("J_s", "space_jacobian"),
-    ("Lambda", "task_space_dynamics"),
-    ("com", "center_of_mass"),
+    ("Jb", "body_jacobian"),
     ("jacobian", "body_jacobian"),
+    ("J_s", "space_jacobian"),
+    ("Js", "space_jacobian"),
+    ("dJ_b", "body_jacobian_rate"),
+    ("dJ_s", "space_jacobian_rate"),
+    ("Lambda", "task_space_dynamics"),
+    ("osim", "task_space_dynamics"),
+    ("rnea_derivatives", "inverse_dynamics_derivatives"),
+    ("computeRNEADerivatives", "inverse_dynamics_derivatives"),
+    ("aba_derivatives", "forward_dynamics_derivatives"),
+    ("computeABADerivatives", "forward_dynamics_derivatives"),
+    ("com", "center_of_mass"),
+    ("center_of_mass_position", "center_of_mass"),
+    ("vcom", "center_of_mass_velocity"),
+    ("acom", "center_of_mass_acceleration"),
+    ("Jcom", "center_of_mass_jacobian"),
+    ("com_jacobian", "center_of_mass_jacobian"),
+    ("ccrba", "centroidal_momentum_matrix"),
+    ("Ag", "centroidal_momentum_matrix"),
+    ("Y", "regressor"),
+    ("computeJointTorqueRegressor", "regressor"),
 ];
+
+/// The place in [`LIST`] of the first name or alias that is meant.
+fn place_by(is: &dyn Fn(&str) -> bool) -> Option<usize> {
+    let alias = || ALIASES.iter().find(|(alias, _)| is(alias)).map(|(_, meant)| *meant);
+    LIST.iter()
+        .position(|known| is(known.name))
+        .or_else(|| alias().and_then(|meant| LIST.iter().position(|known| known.name == meant)))
+}
 
 /// A quantity to compute, with the frame, task or point that it refers to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,14 +108,16 @@ impl<'a> Query<'a> {
         Query { index, subject: Subject { frame: None, coordinates, rows, point: Vec3([0.0; 3]) } }
     }
 
-    /// The quantity of this name, with `_` or `-` between its words, or of one of the [`ALIASES`].
+    /// The quantity of this name, with `_` or `-` between its words, or of one of the [`ALIASES`]. Names of more than
+    /// one letter may be written in capitals: RNEA.
     ///
     /// # Errors
     /// [`Error::NoSuchQuantity`] with the names that exist.
     pub fn named(name: &str) -> Result<Query<'static>, Error> {
-        let alias = ALIASES.iter().find(|(alias, _)| *alias == name).map(|(_, meant)| *meant);
-        let plain = alias.unwrap_or(name).replace('-', "_");
-        let place = LIST.iter().position(|known| known.name == plain);
+        let plain = name.replace('-', "_");
+        let is = |known: &str| known == plain;
+        let is_in_capitals = |known: &str| plain.len() > 1 && known.eq_ignore_ascii_case(&plain);
+        let place = place_by(&is).or_else(|| place_by(&is_in_capitals));
         let known = || LIST.iter().map(|known| known.name).collect();
         place.map(Query::at).ok_or_else(|| Error::NoSuchQuantity { name: String::from(name), known: known() })
     }
@@ -165,5 +214,38 @@ impl<'a> Query<'a> {
             }
         }
         model.check_environment(environment)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::ToString;
+
+    #[test]
+    fn every_alias_is_of_a_quantity_and_no_quantitys_name() {
+        for &(alias, meant) in ALIASES {
+            assert_eq!(Query::named(alias).expect(alias).name(), meant);
+            assert!(LIST.iter().all(|known| known.name != alias), "{alias}");
+        }
+        assert_eq!(Query::named("RNEA").expect("known").name(), "inverse_dynamics");
+        assert_eq!(Query::named("Mass-Matrix").expect("known").name(), "mass_matrix");
+        let names = ["C", "c", "T", "J-b"].map(|name| Query::named(name).expect(name).name());
+        assert_eq!(names, ["coriolis_matrix", "velocity_product", "forward_kinematics", "body_jacobian"]);
+    }
+
+    #[test]
+    fn an_unknown_quantity_names_the_nearest_three() {
+        let told = |name: &str| Query::named(name).expect_err("unknown").to_string();
+        for (name, near) in [
+            ("mass-matrx", "`mass_matrix`"),
+            ("inertia", "`mass_matrix`"),
+            ("jacobian_body", "`body_jacobian`"),
+            ("inverse-dynamic", "`inverse_dynamics`"),
+            ("gravity_vector", "`gravity_forces`"),
+        ] {
+            let told = told(name);
+            assert!(told.contains(near) && told.matches('`').count() == 8, "{name}: {told}");
+        }
     }
 }

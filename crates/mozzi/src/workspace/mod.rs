@@ -3,12 +3,15 @@
 mod articulated;
 mod axis_pairs;
 mod composite;
+mod constraints;
 mod long_limbs;
 mod recursion;
 
 pub(crate) use articulated::Articulated;
 pub(crate) use axis_pairs::{ByRates, ByTheta};
 pub(crate) use composite::Composite;
+pub use constraints::ConstraintMemory;
+pub(crate) use constraints::MOST_ROWS;
 pub(crate) use long_limbs::{Columns, LongLimbs, Passed, Source, Turned, W};
 pub(crate) use recursion::Recursion;
 

@@ -33,10 +33,24 @@ pub struct BenchArguments {
     /// Number of timed rounds; quantities alternate within a round
     #[arg(long, value_name = "R", default_value_t = 7, value_parser = clap::value_parser!(u16).range(1..))]
     rounds: u16,
-    /// Only this quantity; may be repeated [default: those of positions, velocities and one further vector]
-    #[arg(long, value_name = "NAME", value_parser = quantity())]
+    /// Only this quantity; may be repeated [default: seven that are often used]
+    #[arg(long, value_name = "NAME", value_parser = quantity(), value_delimiter = ',')]
     quantity: Vec<Query<'static>>,
+    /// Time all quantities of positions, velocities and one further vector, and print engines and differences
+    #[arg(long)]
+    all: bool,
 }
+
+/// The quantities of the summary.
+const OFTEN_USED: [&str; 7] = [
+    "inverse_dynamics",
+    "forward_dynamics",
+    "mass_matrix",
+    "bias_forces",
+    "forward_kinematics",
+    "body_jacobian",
+    "inverse_dynamics_derivatives",
+];
 
 pub fn run(arguments: &BenchArguments) -> Result<String> {
     let model = arguments.robot.load()?;
@@ -48,7 +62,8 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     // the random states have no other numbers
     let has_inputs =
         |query: &Query| query.input_lengths(&model).all(|length| [model.nq(), model.n()].contains(&length));
-    let is_usual = |&index: &usize| LIST[index].of != Of::Task && !is_empty(&LIST[index]);
+    let is_often_used = |index: usize| arguments.all || OFTEN_USED.contains(&LIST[index].name);
+    let is_usual = |&index: &usize| is_often_used(index) && LIST[index].of != Of::Task && !is_empty(&LIST[index]);
     let usual = (0..LIST.len()).filter(is_usual).map(Query::at).filter(has_inputs);
     let asked = if arguments.quantity.is_empty() { usual.collect() } else { arguments.quantity.clone() };
     if asked.iter().any(|query| is_empty(query.declaration())) {
@@ -76,7 +91,8 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     drop(progress);
     let (BenchArguments { states, rounds, .. }, complete) = (arguments, done == queries.len());
     let report = Report { processor: processor(), states: *states, rounds: *rounds, threads, complete, timings };
-    let text = if arguments.robot.json { page::object(&model, &report) } else { page::page(&model, &report) };
+    let text =
+        if arguments.robot.json { page::object(&model, &report) } else { page::page(&model, &report, arguments.all) };
     if complete {
         return Ok(text);
     }

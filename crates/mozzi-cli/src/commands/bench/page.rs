@@ -29,19 +29,26 @@ pub fn object(model: &Model, report: &Report) -> String {
     ))
 }
 
-pub fn page(model: &Model, report: &Report) -> String {
+pub fn page(model: &Model, report: &Report, is_long: bool) -> String {
     let Report { processor, states, rounds, threads, timings, .. } = report;
     let mut page = Page::default();
     page.line(format!("{}: {} positions, {} velocities", model.description().name, model.nq(), model.n()));
     page.line(format!("{processor}; at most {threads} threads"));
-    page.line(format!("{states} states per batch; least / median of {rounds} alternating rounds"));
-    let time = |timing: &Timing| format!("{} / {}", digits(timing.least), digits(timing.median));
-    let rate = |timing: &Timing| format!("{} / {}", digits(1e3 / timing.least), digits(1e3 / timing.median));
+    page.line(format!("{states} states per batch; median of {rounds} alternating rounds"));
+    let time = |timing: &Timing| digits(timing.median);
+    let rate = |timing: &Timing| digits(1e3 / timing.median);
     let one_thread = |way: Way| way.threads == 1;
     page.title("nanoseconds per state, on one thread").lines(&grid(timings, one_thread, time));
     if *threads > 1 {
         let title = format!("millions of states per second, on {threads} threads");
         page.title(&title).lines(&grid(timings, |way| way.threads > 1, rate));
+    }
+    if !is_long {
+        let most = timings.iter().filter(|timing| timing.way.precision == "f64").map(|timing| timing.difference);
+        let most = about(most.fold(0.0, f64::max));
+        page.blank().line(format!("largest difference of arrays from one state, f64: {most} of the largest entry"));
+        page.line("--all times every quantity, and prints engines and differences; --json every number");
+        return page.end();
     }
     let engine = |timing: &Timing| timing.engine.clone();
     page.title("computed by").lines(&grid(timings, one_thread, engine));

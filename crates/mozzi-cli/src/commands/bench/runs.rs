@@ -26,7 +26,7 @@ impl Data<f64> {
         let mut numbers = |count: usize| random.vector(count, 1.0);
         let theta = (0..states).flat_map(|_| {
             let mut theta: Vec<f64> = model.neutral_configuration();
-            mozzi::integrate(model, &mut theta, &numbers(model.n()), 1.0);
+            mozzi::model::integrate(model, &mut theta, &numbers(model.n()), 1.0);
             theta
         });
         let theta = theta.collect();

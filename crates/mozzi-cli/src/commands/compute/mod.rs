@@ -3,7 +3,8 @@
 mod flags;
 mod gpu;
 mod list;
-mod one_state;
+pub mod noise;
+pub mod one_state;
 mod subject;
 mod table;
 
@@ -13,28 +14,37 @@ use crate::inputs::{InputArguments, STATE};
 use crate::json;
 use crate::numbers::array;
 use crate::quantity::{hyphenated, of_end_effector, quantity};
-use crate::robot::RobotArguments;
+use crate::robot::{RobotArguments, screen};
 use crate::state::WrenchArguments;
 use crate::task::TaskArguments;
-use crate::text::about;
+use crate::text::{Page, about, cut};
+use crate::workload;
 use clap::{Arg, Args};
-use mozzi::quantities::{INPUTS, LIST, Of, Query};
+use mozzi::quantities::{Dim, INPUTS, LIST, Of, Query};
 use mozzi::{Environment, Model, Task, Vec3};
+use one_state::OneState;
+use serde_json::{Value, json};
 use table::{Job, TableArguments};
 
 #[derive(Args, Debug)]
 pub struct ComputeArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// The quantity to compute
-    #[arg(index = 2, value_parser = quantity(), required_unless_present = "list")]
-    quantity: Option<Query<'static>>,
+    /// The quantity to compute, or several: M,h,g
+    #[arg(index = 2, value_parser = quantity(), required_unless_present = "list", value_delimiter = ',', num_args = 1..)]
+    quantity: Vec<Query<'static>>,
     /// List all quantities: names, formulas, inputs, outputs
     #[arg(long)]
     list: bool,
     /// The vector-Jacobian product of the quantity: the gradient of xᵀ or wᵀ times it, with the vector in --x or --w
     #[arg(long)]
     vjp: bool,
+    /// Also print the state, gravity and the names of rows and columns
+    #[arg(short, long)]
+    verbose: bool,
+    /// Print results of any length
+    #[arg(long)]
+    all: bool,
     #[command(flatten)]
     inputs: InputArguments,
     #[command(flatten)]
@@ -54,35 +64,65 @@ pub fn model(model: Arg) -> Arg {
 }
 
 pub fn run(arguments: &ComputeArguments) -> Result<String> {
-    let query = match arguments.quantity {
-        Some(query) if !arguments.list && arguments.vjp => vjp_of(query)?,
-        Some(query) if !arguments.list => query,
-        _ => return Ok(list::page()),
-    };
-    arguments.check_flags(query)?;
-    let model = arguments.robot.load()?;
+    if arguments.list {
+        return Ok(list::page());
+    }
+    let vjp = |query: &Query<'static>| if arguments.vjp { vjp_of(*query) } else { Ok(*query) };
+    let queries = arguments.quantity.iter().map(vjp).collect::<Result<Vec<_>>>()?;
+    arguments.check_flags(&queries)?;
+    let model = arguments.robot.load_at(|model| Ok(arguments.inputs.start(model)?.0))?;
+    let squares = |query: &Query| query.declaration().outputs.iter().any(|out| out.dims.starts_with(&[Dim::N, Dim::N]));
+    if queries.iter().any(squares) {
+        workload::matrices(&model)?;
+    }
     let rows = arguments.task.rows()?;
-    let query = arguments.subject(query, &rows, &model)?;
+    let queries =
+        queries.into_iter().map(|query| arguments.subject(query, &rows, &model)).collect::<Result<Vec<_>>>()?;
     let applied = arguments.wrenches.read(&model)?;
     let environment = Environment { applied: &applied, ..model.environment() };
-    check_constraints(query, &model)?;
+    queries.iter().try_for_each(|&query| check_constraints(query, &model))?;
     if let Some(file) = &arguments.table.input {
-        let (model, table, robot) = (&model, &arguments.table, &arguments.robot);
+        let (model, table, robot, &[query]) = (&model, &arguments.table, &arguments.robot, &queries[..]) else {
+            return Err(Failure::wrong(format!(
+                "--in: {} quantities are given, expected one: a table has the results of one",
+                queries.len()
+            )));
+        };
         return Job { file, query, model, environment, table, robot }.run();
     }
-    let inputs = arguments.inputs.read(query.declaration(), &model)?;
-    let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-    if query.declaration().is_constrained {
-        let open = violation(&model, slices[0])?;
-        if open > 1e-6 {
-            failure::note(&format!("θ violates the constraints by {}; `mozzi assemble` closes them", about(open)));
+    let mut found = Vec::new();
+    for query in queries {
+        let inputs = arguments.inputs.read(query.declaration(), &model)?;
+        let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+        if query.declaration().is_constrained {
+            let open = violation(&model, slices[0])?;
+            if open > 1e-6 {
+                failure::note(&format!("θ violates the constraints by {}; `mozzi assemble` closes them", about(open)));
+            }
         }
+        let outputs = model.compute(query, &slices, &environment)?;
+        found.push(OneState { query, model: &model, inputs, environment, outputs });
     }
-    let outputs = model.compute(query, &slices, &environment)?;
-    Ok(match arguments.robot.json {
-        true => json::print(&one_state::object(query, &model, &slices, &environment, &outputs)),
-        false => one_state::page(query, &model, &slices, &environment, &outputs),
-    })
+    if arguments.robot.json {
+        let mut objects: Vec<Value> = found.iter().map(OneState::object).collect();
+        return Ok(json::print(&match objects.len() {
+            1 => objects.remove(0),
+            _ => json!({ "results": objects }),
+        }));
+    }
+    let mut page = Page::default();
+    for (k, one) in found.iter().enumerate() {
+        if k > 0 {
+            page.blank();
+        }
+        one.write(&mut page, arguments.verbose);
+    }
+    if !arguments.inputs.has_state() && found.iter().any(OneState::is_of_state) && !arguments.verbose {
+        page.line("at the robot's start, as no --theta is given; -v prints it");
+    }
+    let lines: Vec<String> = page.end().lines().map(str::to_string).collect();
+    let most = if arguments.all { usize::MAX } else { screen(&model) };
+    Ok(cut(lines, most).into_iter().map(|line| line + "\n").collect())
 }
 
 /// The quantity that is the vector-Jacobian product of this one.
@@ -113,8 +153,14 @@ fn check_constraints(query: Query, model: &Model) -> Result<()> {
 
 impl ComputeArguments {
     /// Checks that every given flag has an effect.
-    fn check_flags(&self, query: Query) -> Result<()> {
-        let used = flags::of(query.declaration());
+    fn check_flags(&self, queries: &[Query]) -> Result<()> {
+        let mut used: Vec<&str> = Vec::new();
+        for flag in queries.iter().flat_map(|query| flags::of(query.declaration())) {
+            if !used.contains(&flag) {
+                used.push(flag);
+            }
+        }
+        let names: Vec<String> = queries.iter().map(|query| hyphenated(query.name())).collect();
         let tip_wrench = self.wrenches.tip.tip_wrench.is_some();
         let is_of_tip = used.contains(&"tip-wrench") && (tip_wrench || self.table.input.is_some());
         let others = [
@@ -131,7 +177,7 @@ impl ComputeArguments {
         match given.find(|(flag, is_given)| *is_given && !used.contains(flag)) {
             Some((unused, _)) => Err(Failure::wrong(format!(
                 "--{unused} has no effect on {}, which takes {}",
-                hyphenated(query.name()),
+                names.join(", "),
                 flags::text(&used)
             ))),
             None => Ok(()),

@@ -1,6 +1,7 @@
 //! The text of a URDF: the edited text of IN, if IN is a URDF, or a newly written one.
 
 use crate::failure::{self, Failure, Result};
+use crate::input;
 use crate::robot_json;
 use clap::ValueEnum;
 use mozzi::Description;
@@ -68,9 +69,8 @@ fn source(input: &str, settings: Settings) -> Result<Option<String>> {
     if robot_json::is_json(input) {
         return Ok(None);
     }
-    let text =
-        std::fs::read_to_string(input).map_err(|error| Failure::wrong(format!("{input}: cannot be read: {error}")))?;
-    let text = expanded(input, &text, settings)?.unwrap_or(text);
+    let text = input::robot_file(input)?;
+    let text = expanded(input::name(input), &text, settings)?.unwrap_or(text);
     Ok(Some(text).filter(|text| !mjcf::is_mjcf(text)))
 }
 

@@ -8,6 +8,8 @@ use crate::recogniser::Request;
 use crate::sqlite::Database;
 use crate::tables::samples::Samples;
 use mozzi::Model;
+#[cfg(feature = "mcap")]
+use mozzi_urdf::files;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -92,9 +94,13 @@ fn of_mcap(file: &str, _: &mut Topics) -> Result<()> {
     Err(Failure::wrong(format!("{file}: this program was built without the feature mcap, which reads it")))
 }
 
+/// A larger bag is refused: it is read whole.
+#[cfg(feature = "mcap")]
+const MOST_BYTES: u64 = 4 << 30;
+
 #[cfg(feature = "mcap")]
 fn of_mcap(file: &str, topics: &mut Topics) -> Result<()> {
-    let bytes = std::fs::read(file).map_err(|error| cannot(file, &error))?;
+    let bytes = files::read(Path::new(file), MOST_BYTES).map_err(|error| cannot(file, &error))?;
     let messages = mcap::MessageStream::new(&bytes).map_err(|error| cannot(file, &error))?;
     for message in messages {
         let message = message.map_err(|error| match error {

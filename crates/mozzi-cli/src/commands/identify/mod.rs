@@ -8,12 +8,12 @@ mod page;
 mod topics;
 
 use crate::columns::save;
-use crate::commands::convert::edits;
+use crate::edits;
 use crate::failure::{self, Failure, Result};
-use crate::numbers::{array, number, numbers};
+use crate::numbers::{array, number};
 use crate::progress::Waiting;
 use crate::recogniser::{Force, Row};
-use crate::robot::RobotArguments;
+use crate::robot::FileArguments;
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use log_file::{Given, read_log, read_table};
@@ -28,7 +28,7 @@ use output::Out;
 #[derive(Args, Debug)]
 pub struct IdentifyArguments {
     #[command(flatten)]
-    robot: RobotArguments,
+    robot: FileArguments,
     /// Logs: text with a header of names such as theta_JOINT, q1, /joint_states/JOINT/effort (see --columns), .npz,
     /// .npy, .arrow, .parquet; JointState messages of .mcap, .db3 or a folder of rosbag2
     #[arg(value_name = "LOG", required = true)]
@@ -146,7 +146,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
     let lock = arguments.lock_list(&whole)?;
-    let locks = edits::locks(&lock)?;
+    let locks = edits::locks(&lock, &whole)?;
     let model = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks)? };
     let given = arguments.given();
     if arguments.columns {
@@ -199,6 +199,12 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
         false if !verdict.is_trusted || arguments.robot.is_strict() && has_warnings => Err(Failure::Answered(text)),
         false => Ok(text),
     }
+}
+
+/// A log, without what the command line says about it.
+pub fn log(file: &str, model: &Model) -> Result<Log> {
+    let given = Given { order: &[], force: Force::Torque, topic: None };
+    Ok(read_log(file, model, &given)?.0)
 }
 
 impl IdentifyArguments {
@@ -286,16 +292,26 @@ impl IdentifyArguments {
     fn limits(&self) -> Result<Limits> {
         let mut limits = Limits::default();
         if let Some(text) = &self.total_mass {
-            limits.total_mass = Some(array("--total-mass", text, ["the mass", "its deviation"])?);
+            let [mass, deviation] = array("--total-mass", text, ["the mass", "its deviation"])?;
+            if !(mass > 0.0 && deviation > 0.0) {
+                return Err(Failure::wrong(format!(
+                    "--total-mass is {mass} kg with a deviation of {deviation} kg, expected two positive numbers"
+                )));
+            }
+            limits.total_mass = Some([mass, deviation]);
         }
         for text in &self.between {
             let (name, list) = edits::split("--between", text, "NAME=LOW,HIGH")?;
-            limits.between.push((name.to_string(), array(&format!("--between {name}"), list, ["low", "high"])?));
+            let [low, high] = array(&format!("--between {name}"), list, ["low", "high"])?;
+            if low > high {
+                return Err(Failure::wrong(format!("--between {name} is {low} to {high}, expected the lower first")));
+            }
+            limits.between.push((name.to_string(), [low, high]));
         }
         for text in &self.center_in {
             let (name, list) = edits::split("--center-in", text, "LINK=x,y,z,X,Y,Z")?;
-            let [x, y, z, X, Y, Z] = array(&format!("--center-in {name}"), list, ["x", "y", "z", "X", "Y", "Z"])?;
-            limits.center_of_mass.push((name.to_string(), [[x, y, z], [X, Y, Z]]));
+            let corners = edits::corners(&format!("--center-in {name}"), list)?;
+            limits.center_of_mass.push((name.to_string(), corners));
         }
         Ok(limits)
     }
@@ -313,9 +329,7 @@ impl IdentifyArguments {
                     Failure::wrong(format!("--known-payload is of log `{log}`, expected a number from 1 to {count}"))
                 })?;
             let place = format!("--known-payload {name}");
-            let mut list = numbers(&place, list)?;
-            list.resize(10, 0.0);
-            log.payload = Some((model.frame(frame)?, edits::inertia(&place, list.try_into().unwrap_or([0.0; 10]))?));
+            log.payload = Some((model.frame(frame)?, edits::payload(&place, list)?));
         }
         Ok(())
     }

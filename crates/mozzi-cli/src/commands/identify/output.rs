@@ -3,6 +3,7 @@
 use crate::columns::save;
 use crate::commands::convert::urdf;
 use crate::failure::{self, Failure, Result};
+use crate::input;
 use crate::robot_json;
 use mozzi::Description;
 use mozzi_urdf::{EditedFile, Settings, edit_files, expanded, mjcf};
@@ -53,8 +54,7 @@ impl<'a> Out<'a> {
                 let why = format!("`{input}` is no file that could be edited, expected a name that ends in .urdf");
                 return Err(Failure::wrong(format!("--out is `{path}`, but {why}")));
             }
-            out.text = std::fs::read_to_string(input)
-                .map_err(|error| Failure::wrong(format!("{input}: cannot be read: {error}")))?;
+            out.text = input::robot_file(input)?;
             let is_mjcf = mjcf::is_mjcf(&out.text);
             let is_xacro = expanded(input, &out.text, settings)?.is_some();
             let language = if is_xacro {

@@ -7,10 +7,14 @@ pub mod values;
 
 use crate::failure::Result;
 use crate::json::print;
-use crate::robot::RobotArguments;
+use crate::quantity::quantity;
+use crate::robot::{RobotArguments, screen};
 use crate::state::{Motion, MotionArguments, environment};
 use crate::task::TaskArguments;
+use crate::text::Page;
 use clap::Args;
+use mozzi::quantities::Query;
+use serde_json::Value;
 use values::Terms;
 
 #[derive(Args, Debug)]
@@ -24,16 +28,47 @@ pub struct TermsArguments {
     /// Also show the matrices of the closed form: 𝒜 𝒢 𝒲 ℒ [ad_𝒱] [ad_𝒜θ̇] 𝒱 𝒱̇ 𝓕
     #[arg(long)]
     stacked: bool,
+    /// Show these quantities alone: M,g
+    #[arg(long, value_name = "NAME,…", value_parser = quantity(), value_delimiter = ',', conflicts_with = "all")]
+    only: Vec<Query<'static>>,
+    /// Show all quantities, however many lines they take
+    #[arg(long)]
+    all: bool,
+    /// Also print the state
+    #[arg(short, long)]
+    verbose: bool,
 }
 
 pub fn run(arguments: &TermsArguments) -> Result<String> {
-    let model = arguments.robot.load()?;
+    let model = arguments.robot.load_at(|model| Ok(arguments.motion.start(model)?.0))?;
     let Motion { state, applied } = arguments.motion.read(&model)?;
     let environment = environment(&model, &applied);
     let mut terms = Terms::at(&model, state, &environment)?;
-    terms.add_task(&arguments.task, &environment)?;
+    if arguments.only.is_empty() || arguments.task.task.is_some() {
+        terms.add_task(&arguments.task, &environment)?;
+    }
     if arguments.stacked {
         terms.closed_form = Some(model.closed_form(&terms.theta, &terms.dtheta, &environment)?);
     }
-    Ok(if arguments.robot.json { print(&json::object(&terms)) } else { text::page(&terms) })
+    if arguments.robot.json {
+        let mut object = json::object(&terms);
+        if let (Value::Object(entries), false) = (&mut object, arguments.only.is_empty()) {
+            let is_other = |name: &str| Query::named(name).is_ok_and(|query| !arguments.only.contains(&query));
+            entries.retain(|name, _| !is_other(name) && name != "newton_euler");
+        }
+        return Ok(print(&object));
+    }
+    if !arguments.only.is_empty() {
+        let mut page = Page::default();
+        for (k, &query) in arguments.only.iter().enumerate() {
+            if k > 0 {
+                page.blank();
+            }
+            terms.one(query, environment)?.write(&mut page, arguments.verbose);
+        }
+        return Ok(page.end());
+    }
+    terms.clean(&environment);
+    let most = if arguments.all || arguments.stacked { usize::MAX } else { screen(&model) };
+    Ok(text::page(&terms, arguments.verbose, most))
 }

@@ -6,7 +6,7 @@ use crate::numbers::{TWIST, WRENCH};
 use crate::quantity::is_of_a_frame;
 use crate::robot::{Units, space_frame};
 use crate::table::{Quantity, quantities, short};
-use crate::text::{Page, beside, flow, matrix, scalar, sixes, table, tuple};
+use crate::text::{Page, Sections, beside, flow, matrix, scalar, sixes, table, tuple};
 use mozzi::quantities::{
     BiasForces, BodyJacobian, BodyJacobianRate, CoriolisMatrix, ForwardDynamics, ForwardDynamicsDerivatives,
     ForwardKinematics, GravityForces, GravityForcesDerivative, INPUTS, InverseDynamics, InverseDynamicsDerivatives,
@@ -16,43 +16,57 @@ use mozzi::quantities::{
 use mozzi::{Base, TaskFrame, Twist};
 use nalgebra::{DMatrix, DVector};
 
-pub fn page(terms: &Terms) -> String {
+/// Sections in the order of their importance, up to `most` lines.
+pub fn page(terms: &Terms, is_verbose: bool, most: usize) -> String {
     let mut page = Page::default();
     let model = terms.model;
-    let numbered =
-        |names: Vec<&str>| flow(&names.iter().zip(1..).map(|(name, j)| format!("{j} {name}")).collect::<Vec<_>>());
-    if model.is_floating() {
-        let (name, nq, n) = (&model.description().name, model.nq(), model.n());
-        page.line(format!(
-            "{name} with a floating base, {} joints: {nq} positions θ and {n} velocities θ̇,",
-            model.joint_names().len()
-        ));
-        page.lines(&numbered(model.velocity_names().collect()));
-        page.line("in this order in the rows and columns of all matrices; the base's are in its own coordinates");
-    } else {
-        page.line(format!("{}, {} joints:", model.description().name, model.joint_names().len()));
-        page.lines(&numbered(model.velocity_names().collect()));
+    let (name, nq, n, joints) = (&model.description().name, model.nq(), model.n(), model.joint_names().len());
+    page.line(match model.is_floating() {
+        true => format!("{name} with a floating base, {joints} joints: {nq} positions θ and {n} velocities θ̇"),
+        false => format!("{name}, {joints} joints"),
+    });
+    let mut sections = Sections::default();
+    if is_verbose {
+        sections.add("state", "the state", [state(terms), wrench(terms)].concat());
     }
-    page.title("the state").lines(&state(terms)).lines(&wrench(terms));
-    if let Some(tip) = terms.tip {
-        page.title(&format!("where {} is and how it moves", model.frame_name(tip))).lines(&kinematics(terms));
+    sections.add("sum", "the dynamics, τ = M(θ) θ̈ + c(θ, θ̇) + g(θ) + JᵀF_tip + f(θ, θ̇)", sum(terms));
+    let task_title = "the dynamics in the task space, F = Λ V̇ + η";
+    if terms.is_task_given {
+        sections.add("Λ, η", task_title, task(terms));
     }
-    page.title("the dynamics, τ = M(θ) θ̈ + c(θ, θ̇) + g(θ) + JᵀF_tip + f(θ, θ̇)").lines(&matrices(terms));
-    page.blank().lines(&sum(terms)).blank().lines(&further(terms));
-    page.title("derivatives of inverse and forward dynamics").lines(&derivatives(terms));
-    page.title("the Newton-Euler recursion, in frames {i} at the links' centres of mass, angular first");
-    page.lines(&recursion(terms));
-    page.title("the dynamics in the task space, F = Λ V̇ + η").lines(&task(terms));
+    sections.add("M", "the mass matrix", mass_matrix(terms));
     if let Some(form) = &terms.closed_form {
-        page.title("the closed form, all links stacked").lines(&stacked::lines(terms.model, form, &terms.ddtheta));
+        let stacked = stacked::lines(terms.model, form, &terms.ddtheta);
+        sections.add("closed form", "the closed form, all links stacked", stacked);
     }
+    if let Some(tip) = terms.tip {
+        let title = format!("where {} is and how it moves", model.frame_name(tip));
+        sections.add("tip", title, [pose(terms), blocks(terms, &[body_jacobian()])].concat());
+    }
+    sections.add("energies", "forward dynamics and energies", further(terms));
+    let names: Vec<String> = model.velocity_names().zip(1..).map(|(name, j)| format!("{j} {name}")).collect();
+    let order = if model.is_floating() {
+        "rows and columns; the base's are in its own coordinates"
+    } else {
+        "rows and columns"
+    };
+    sections.add("names", order, flow(&names));
+    sections.add("C, Ṁ", "the Coriolis matrix, and the rate of M", coriolis(terms));
+    if !terms.is_task_given {
+        sections.add("Λ, η", task_title, task(terms));
+    }
+    let jacobians = if terms.tip.is_some() { jacobians(terms) } else { Vec::new() };
+    sections.add("J_s, J̇", "the space Jacobian, and rates of Jacobians", jacobians);
+    let recursion_title = "the Newton-Euler recursion, in frames {i} at the links' centres of mass, angular first";
+    sections.add("Newton-Euler recursion", recursion_title, recursion(terms));
+    sections.add("derivatives", "derivatives of inverse and forward dynamics", derivatives(terms));
+    sections.write(&mut page, most);
     page.end()
 }
 
 pub fn state(terms: &Terms) -> Vec<String> {
     let inputs = INPUTS.iter().zip([&terms.theta, &terms.dtheta, &terms.ddtheta]);
-    let units = Units::of(terms.model);
-    let rows: Vec<Quantity> = inputs.map(|(input, values)| Quantity::of(input, &units, values)).collect();
+    let rows: Vec<Quantity> = inputs.map(|(input, values)| Quantity::of(terms.model, input, values)).collect();
     quantities(terms.model, &rows, false)
 }
 
@@ -81,7 +95,7 @@ pub fn blocks(terms: &Terms, list: &[(&str, Query, usize)]) -> Vec<String> {
 }
 
 /// A Jacobian's lines.
-fn with_rows_named(lines: Vec<String>) -> Vec<String> {
+pub fn with_rows_named(lines: Vec<String>) -> Vec<String> {
     let mut names = TWIST.iter().cycle();
     let named = |line: String| match line.starts_with("columns") {
         true => line,
@@ -96,53 +110,72 @@ fn velocity(V: Option<DVector<f64>>) -> String {
     format!("(ω, v), ω = {} rad/s, v = {} m/s", short(w), short(v))
 }
 
-fn kinematics(terms: &Terms) -> Vec<String> {
+/// The tip's pose and twists.
+fn pose(terms: &Terms) -> Vec<String> {
     let space = space_frame(terms.model);
     let title = format!("T_sb(θ), its pose in {space} [R p], m");
     let mut lines = blocks(terms, &[(&title, ForwardKinematics.into(), 0)]);
-    lines.push(format!("V_b = J_b θ̇ = {}   in its own frame", velocity(terms.twist(BodyJacobian))));
-    lines.push(format!("V_s = J_s θ̇ = {}   in {space}", velocity(terms.twist(SpaceJacobian))));
-    lines.extend(blocks(
+    if terms.dtheta.iter().any(|&x| x != 0.0) {
+        lines.push(format!("V_b = J_b θ̇ = {}, in its own frame", velocity(terms.twist(BodyJacobian))));
+        lines.push(format!("V_s = J_s θ̇ = {}, in {space}", velocity(terms.twist(SpaceJacobian))));
+    }
+    lines
+}
+
+fn body_jacobian() -> (&'static str, Query<'static>, usize) {
+    ("J_b(θ), body Jacobian", BodyJacobian.into(), 0)
+}
+
+fn jacobians(terms: &Terms) -> Vec<String> {
+    blocks(
         terms,
         &[
-            ("J_b(θ), body Jacobian", BodyJacobian.into(), 0),
             ("J_s(θ), space Jacobian", SpaceJacobian.into(), 0),
             ("J̇_b(θ, θ̇), its rate", BodyJacobianRate.into(), 0),
             ("J̇_s(θ, θ̇), its rate", SpaceJacobianRate.into(), 0),
         ],
-    ));
-    lines
+    )
 }
 
-fn matrices(terms: &Terms) -> Vec<String> {
-    let M = format!(
-        "M(θ), mass matrix [{}]",
-        Units::of(terms.model).own(Query::from(MassMatrix).declaration().outputs[0].unit)
-    );
-    let dM = ("Ṁ(θ, θ̇) = C + Cᵀ, its rate", MassMatrixRate.into(), 0);
-    let C = ("C(θ, θ̇), Coriolis matrix: C θ̇ = c", CoriolisMatrix.into(), 0);
-    blocks(terms, &[(&M, MassMatrix.into(), 0), dM, C])
+fn mass_matrix(terms: &Terms) -> Vec<String> {
+    let unit = Units::of(terms.model).own(Query::from(MassMatrix).declaration().outputs[0].unit);
+    blocks(terms, &[(&format!("M(θ) [{unit}]"), MassMatrix.into(), 0)])
 }
 
-/// τ as the sum of its terms.
+fn coriolis(terms: &Terms) -> Vec<String> {
+    let dM = ("Ṁ(θ, θ̇) = C + Cᵀ", MassMatrixRate.into(), 0);
+    let C = ("C(θ, θ̇): C θ̇ = c", CoriolisMatrix.into(), 0);
+    if terms.dtheta.iter().all(|&x| x == 0.0) {
+        return Vec::new(); // both are 0
+    }
+    blocks(terms, &[C, dM])
+}
+
+/// τ as the sum of its terms; those that are 0 for every joint are left out.
 pub fn sum(terms: &Terms) -> Vec<String> {
     let force = &Units::of(terms.model).input(3);
     let M = terms.matrix(MassMatrix, 0).unwrap_or_default();
     let inertial = M * DVector::from_column_slice(&terms.ddtheta);
-    quantities(
-        terms.model,
-        &[
-            Quantity::new("  M θ̈", "mass_matrix θ̈", force, inertial.as_slice()),
-            Quantity::new("+ c", "velocity_product", force, terms.vector(VelocityProduct)),
-            Quantity::new("+ g", "gravity_forces", force, terms.vector(GravityForces)),
-            Quantity::new("+ JᵀF_tip", "tip_forces", force, terms.vector(TipForces)),
-            Quantity::new("+ dθ̇ + μ sgn θ̇", "joint_friction", force, terms.vector(JointFriction)),
-            Quantity::new("+ k(θ − θ₀)", "spring_forces", force, terms.vector(SpringForces)),
-            Quantity::new("= τ", "inverse_dynamics", force, terms.vector(InverseDynamics)),
-            Quantity::new("  h = c + g", "bias_forces", force, terms.vector(BiasForces)),
-        ],
-        true,
-    )
+    let mut rows = vec![
+        Quantity::new("  M θ̈", "mass_matrix θ̈", force, inertial.as_slice()),
+        Quantity::new("+ c", "velocity_product", force, terms.vector(VelocityProduct)),
+        Quantity::new("+ g", "gravity_forces", force, terms.vector(GravityForces)),
+        Quantity::new("+ JᵀF_tip", "tip_forces", force, terms.vector(TipForces)),
+        Quantity::new("+ dθ̇ + μ sgn θ̇", "joint_friction", force, terms.vector(JointFriction)),
+        Quantity::new("+ k(θ − θ₀)", "spring_forces", force, terms.vector(SpringForces)),
+        Quantity::new("= τ", "inverse_dynamics", force, terms.vector(InverseDynamics)),
+        Quantity::new("  h = c + g", "bias_forces", force, terms.vector(BiasForces)),
+    ];
+    let is_zero = |row: &Quantity| !row.values.is_empty() && row.values.iter().all(|&x| x == 0.0);
+    let zero: Vec<&str> =
+        rows.iter().filter(|row| is_zero(row)).map(|row| row.symbol.trim_start_matches("+ ").trim()).collect();
+    let zero = zero.join(", ");
+    rows.retain(|row| !is_zero(row) || row.symbol == "= τ");
+    let mut lines = quantities(terms.model, &rows, true);
+    if !zero.is_empty() {
+        lines.push(format!("0 in this state: {zero}"));
+    }
+    lines
 }
 
 fn further(terms: &Terms) -> Vec<String> {

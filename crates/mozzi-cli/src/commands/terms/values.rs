@@ -1,15 +1,30 @@
 //! The quantities of the list at one state.
 
-use crate::failure::{self, Result};
+use crate::commands::compute::noise::cleaned;
+use crate::commands::compute::one_state::OneState;
+use crate::failure::{self, Failure, Result};
 use crate::quantity::hyphenated;
 use crate::robot::end_effector;
 use crate::task::TaskArguments;
+use crate::text::about;
+use mozzi::TaskSpaceDynamics;
 use mozzi::quantities::{BiasForces, InverseDynamics, LIST, Of, Query};
-use mozzi::{
-    BodyFrame, ClosedForm, Environment, FrameId, Model, NewtonEuler, Task, TaskFrame, TaskSpaceDynamics, Wrench,
-};
+use mozzi::{BodyFrame, ClosedForm, Environment, FrameId, Model, NewtonEuler, Task, TaskFrame, Wrench};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
+
+/// The quantities of a page whose rounding errors may stand alone.
+const SHOWN: [&str; 9] = [
+    "velocity_product",
+    "gravity_forces",
+    "tip_forces",
+    "inverse_dynamics",
+    "forward_dynamics",
+    "kinetic_energy",
+    "coriolis_matrix",
+    "mass_matrix_rate",
+    "forward_kinematics",
+];
 
 /// The quantities at one state; τ is the torque that the motion needs.
 pub struct Terms<'m> {
@@ -26,6 +41,8 @@ pub struct Terms<'m> {
     pub newton_euler: NewtonEuler,
     /// None without an end effector, and if the task is singular.
     pub task: Option<TaskSpaceDynamics>,
+    /// Whether the task is given, not that of all six directions.
+    pub is_task_given: bool,
     pub task_rows: Vec<usize>,
     pub task_frame: TaskFrame,
     pub closed_form: Option<ClosedForm>,
@@ -64,6 +81,7 @@ impl<'m> Terms<'m> {
             found,
             newton_euler: model.newton_euler(&theta, &dtheta, &ddtheta, environment, BodyFrame::CenterOfMass)?,
             task: None,
+            is_task_given: false,
             task_rows: (0..6).collect(),
             task_frame: TaskFrame::Body,
             closed_form: None,
@@ -72,6 +90,48 @@ impl<'m> Terms<'m> {
             dtheta,
             ddtheta,
         })
+    }
+
+    /// Replaces rounding errors by 0, for a page.
+    pub fn clean(&mut self, environment: &Environment) {
+        let queries: Vec<Query> = SHOWN.map(|name| Query::named(name)).into_iter().flatten().collect();
+        for query in queries {
+            let Ok(one) = self.one(query, *environment) else { continue };
+            let outputs = cleaned(one.query, self.model, &one.inputs, environment, &one.outputs);
+            if query != BiasForces.into() {
+                self.found[query.index()] = Some(outputs);
+            }
+        }
+    }
+
+    /// A quantity of the list at this state, of the end effector if it has a frame.
+    ///
+    /// # Errors
+    /// For those that need a further vector or cannot be computed here.
+    pub fn one<'q>(&'q self, query: Query<'q>, environment: Environment<'q>) -> Result<OneState<'q>> {
+        let declaration = query.declaration();
+        let tau = self.vector(InverseDynamics);
+        let given = [("theta", &*self.theta), ("dtheta", &*self.dtheta), ("ddtheta", &*self.ddtheta), ("tau", tau)];
+        let mut inputs = Vec::new();
+        for input in declaration.inputs {
+            let Some((_, values)) = given.iter().find(|(name, _)| *name == input.name) else {
+                let name = hyphenated(query.name());
+                return Err(Failure::wrong(format!("--only: {name} needs --{}; `mozzi compute` takes it", input.name)));
+            };
+            inputs.push(values.to_vec());
+        }
+        let query = match declaration.of {
+            Of::Frame => query.of(self.model.end_effector()?),
+            Of::Task => query.of_task(Task {
+                frame: self.model.end_effector()?,
+                coordinates: self.task_frame,
+                rows: &self.task_rows,
+            }),
+            Of::Robot | Of::Point => query,
+        };
+        let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+        let outputs = self.model.compute(query, &slices, &environment)?;
+        Ok(OneState { query, model: self.model, inputs, environment, outputs })
     }
 
     /// A quantity's first output; empty if there is none.
@@ -98,6 +158,7 @@ impl<'m> Terms<'m> {
     pub fn add_task(&mut self, arguments: &TaskArguments, environment: &Environment) -> Result<()> {
         (self.task_rows, self.task_frame) = (arguments.rows()?, arguments.coordinates());
         let is_named = arguments.task.is_some();
+        self.is_task_given = is_named;
         if is_named {
             self.model.end_effector()?;
         }
@@ -106,6 +167,16 @@ impl<'m> Terms<'m> {
         let still = Environment { applied: &[], ..*environment };
         match self.model.task_space_dynamics(&self.theta, &self.dtheta, task, &still) {
             Ok(dynamics) => self.task = Some(dynamics),
+            Err(mozzi::Error::SingularTask { singular_values, .. }) if self.model.n() >= 6 && !is_named => {
+                let least = singular_values.iter().copied().fold(f64::INFINITY, f64::min);
+                let most = singular_values.iter().copied().fold(0.0, f64::max);
+                failure::note(&format!(
+                    "Λ and η are omitted: the end effector cannot move in all six directions here; the singular values of \
+                     its Jacobian are {} to {}",
+                    about(least),
+                    about(most)
+                ));
+            }
             Err(mozzi::Error::SingularTask { .. }) if self.model.n() < 6 && !is_named => failure::note(&format!(
                 "Λ and η are omitted: {} joints cannot move in all six directions; choose some, such as --task vx,vz",
                 self.model.n()

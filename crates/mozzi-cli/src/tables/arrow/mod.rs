@@ -16,17 +16,18 @@ use arrow_ipc::reader::FileReader;
 use arrow_ipc::writer::FileWriter;
 use arrow_schema::{ArrowError, Field, Schema};
 use mozzi::Model;
-use std::fs::File;
+use mozzi_urdf::files;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The robot is chosen by the columns' names.
 pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) -> Result<Samples> {
     let damaged = |why: String| cannot(file, &why);
-    let mut opened = File::open(file).map_err(|error| cannot(file, &error))?;
+    let mut opened = files::open(Path::new(file)).map_err(|error| cannot(file, &error))?;
     blocks::check(&mut opened).map_err(damaged)?;
     caught(file, || {
         let reader = |columns: Option<Vec<usize>>| {
-            let opened = File::open(file).map_err(|error| cannot(file, &error))?;
+            let opened = files::open(Path::new(file)).map_err(|error| cannot(file, &error))?;
             FileReader::try_new_buffered(opened, columns).map_err(|error| cannot(file, &error))
         };
         let names: Vec<String> = reader(None)?.schema().fields().iter().map(|field| field.name().clone()).collect();

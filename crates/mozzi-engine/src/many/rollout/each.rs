@@ -3,7 +3,7 @@
 use super::{BatchGradient, BatchRollout, part};
 use crate::{Batch, Error};
 use mozzi::Model;
-use mozzi::simulation::Rollout;
+use mozzi_sim::Rollout;
 use std::convert::identity;
 
 impl BatchRollout {
@@ -11,7 +11,7 @@ impl BatchRollout {
     ///
     /// # Errors
     /// As [`Rollout::new`].
-    pub fn of_one<'m>(&self, model: &'m Model) -> Result<Rollout<'m>, mozzi::Error> {
+    pub fn of_one<'m>(&self, model: &'m Model) -> Result<Rollout<'m>, mozzi_sim::Error> {
         let mut rollout = Rollout::new(model, self.step, self.method)?;
         if let Some(gravity) = self.gravity {
             rollout = rollout.with_gravity(gravity)?;
@@ -33,7 +33,7 @@ impl BatchGradient<'_> {
         rollout: &mut Rollout<'_>,
         [theta, dtheta, tau]: [&[f64]; 3],
         [theta_bar, dtheta_bar]: [&[f64]; 2],
-    ) -> Result<(), mozzi::Error> {
+    ) -> Result<(), mozzi_sim::Error> {
         let found = rollout.vjp(theta, dtheta, tau, theta_bar, dtheta_bar)?;
         self.theta.copy_from_slice(&found.theta);
         self.dtheta.copy_from_slice(&found.dtheta);
@@ -51,7 +51,7 @@ impl Batch<f64> {
         wants_parameters: bool,
         [theta, dtheta, tau]: [&[f64]; 3],
         tables: Vec<I>,
-        f: impl Fn(&mut Rollout<'_>, [&[f64]; 3], usize, I) -> Result<(), mozzi::Error> + Sync,
+        f: impl Fn(&mut Rollout<'_>, [&[f64]; 3], usize, I) -> Result<(), mozzi_sim::Error> + Sync,
     ) -> Result<(), Error> {
         let (model, N) = (self.model(), options.steps);
         let (nq, n) = (model.nq(), model.n());

@@ -1,8 +1,8 @@
 //! Robots one by one, on all cores, each as alone: those with dry friction that sticks, contacts, stops or events.
 
 use crate::{Batch, BatchEnvironment, Error, Number};
-use mozzi::simulation::{Input, Options, Run, Simulation};
 use mozzi::{FrameId, Model, Twist, Vec3, Wrench};
+use mozzi_sim::{Input, Options, Run, Simulation};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 
@@ -38,7 +38,7 @@ impl<T: Number> Batch<T> {
     fn one_by_one<R: Send>(
         &self,
         robots: usize,
-        f: impl Fn(usize) -> Result<R, mozzi::Error> + Sync,
+        f: impl Fn(usize) -> Result<R, mozzi_sim::Error> + Sync,
     ) -> Result<Vec<R>, Error> {
         let found = self.workers().map((0..robots).collect(), || (), |(), k| (k, f(k)));
         found.into_iter().map(|(index, run)| run.map_err(|source| Error::State { index, source })).collect()
@@ -114,7 +114,7 @@ struct Held<'a> {
 }
 
 impl Input for Held<'_> {
-    fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), mozzi::Error> {
+    fn torque(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) -> Result<(), mozzi_sim::Error> {
         tau.iter_mut().zip(self.tau).for_each(|(tau, x)| *tau += x);
         Ok(())
     }
@@ -125,7 +125,7 @@ impl Input for Held<'_> {
         _: &[f64],
         _: &[f64],
         wrenches: &mut Vec<(FrameId, Wrench)>,
-    ) -> Result<(), mozzi::Error> {
+    ) -> Result<(), mozzi_sim::Error> {
         wrenches.extend_from_slice(&self.wrenches);
         Ok(())
     }

@@ -1,9 +1,9 @@
 //! Positions, velocities and accelerations that satisfy the constraints.
 
 use super::{Rows, columns, least_squares};
-use crate::kinematics::{difference, integrate};
 use crate::model::description::JointKind;
 use crate::model::{Bounds, Error, Freedom, Model};
+use crate::model::{difference, integrate};
 use crate::random::Random;
 use alloc::string::String;
 use alloc::vec::Vec;

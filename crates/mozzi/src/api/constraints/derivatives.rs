@@ -1,9 +1,11 @@
 //! Derivatives of constrained forward dynamics.
 
 use super::Rows;
-use crate::constraints::{ConstraintMemory, constraint_jacobian, delassus};
-use crate::kinematics::{joint_transforms, seed_direction};
+use crate::ConstraintMemory;
+use crate::constraints::{constraint_jacobian, delassus};
+use crate::kinematics::joint_transforms;
 use crate::linalg::ldlt;
+use crate::model::seed_direction;
 use crate::model::{Environment, Error, Model};
 use crate::scalar::Dual;
 use crate::workspace::Workspace;
@@ -11,8 +13,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// The derivatives of θ̈ and λ of [`constrained_forward_dynamics`](crate::constrained_forward_dynamics): n × n and m ×
-/// n.
+/// The derivatives of θ̈ and λ of [`constrained_forward_dynamics`](crate::constraints::constrained_forward_dynamics): n
+/// × n and m × n.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstrainedForwardDynamicsDerivatives {
     /// ∂θ̈/∂θ; a floating base and balls along their velocities.

@@ -26,7 +26,7 @@ pub struct ConstrainedDynamics {
 
 impl Model<f64> {
     /// θ̈ and λ from τ, with the wrench of each constraint: see
-    /// [`constrained_forward_dynamics`](crate::constrained_forward_dynamics).
+    /// [`constrained_forward_dynamics`](crate::constraints::constrained_forward_dynamics).
     ///
     /// # Errors
     /// [`Error::WrongLength`], and [`Error::SingularMassMatrix`] naming the joint.

@@ -36,7 +36,7 @@ pub(crate) struct Rows {
 
 impl<C: Scalar> Model<C> {
     /// The constraint that a row belongs to.
-    pub(crate) fn constraint_of_row(&self, row: usize) -> String {
+    pub fn constraint_of_row(&self, row: usize) -> String {
         let found = self.ties.list.iter().rposition(|tie| tie.first <= row).unwrap_or(0);
         self.constraints().get(found).map_or_else(String::new, |one| one.name.clone())
     }

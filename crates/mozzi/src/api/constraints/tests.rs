@@ -1,8 +1,8 @@
+use crate::constraints::constrained_forward_dynamics;
 use crate::model::description::{Anchor, Closure, Constraint};
 use crate::scalar::Dual;
-use crate::simulation::{Method, Options, Policy, Simulation, Zero, torque};
 use crate::testing::{closed, floating_mixed_tree, four_bar, mixed_tree, state, tree};
-use crate::{Environment, Error, Model, SE3, Workspace, constrained_forward_dynamics, kinematics};
+use crate::{Environment, Error, Model, SE3, Workspace};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DVector;
@@ -52,27 +52,6 @@ fn what_cannot_be_closed_is_named() {
     let message = bad.build().expect_err("three errors").to_string();
     for expected in ["`coupler` and `coupler` are fixed to each other", "is 0 m", "no link or frame `rokcer`"] {
         assert!(message.contains(expected), "{message}");
-    }
-}
-
-#[test]
-fn a_four_bar_keeps_its_energy_and_stays_closed() {
-    let (model, theta, dtheta) = closed_four_bar();
-    let methods = [
-        (Method::RungeKutta4, 1e-6),
-        (Method::DormandPrince { tolerance: 1e-9 }, 1e-6),
-        (Method::Midpoint, 2e-3),
-        (Method::SemiImplicitEuler, 0.3),
-    ];
-    for (method, drift) in methods {
-        let options = Options { method, record_every: 100, ..Options::new(2.0, 2000) };
-        let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero).expect("a motion");
-        assert!(run.motion.largest_drift() < drift, "{}: {}", method.name(), run.motion.largest_drift());
-        assert!(run.closing.residual < 1e-14, "{}: {:?}", method.name(), run.closing);
-        for sample in run.motion.samples() {
-            let rows = model.constraint_rows_at(sample.theta, sample.dtheta);
-            assert!(rows.phi.amax() < 1e-13 && (rows.A * DVector::from_column_slice(sample.dtheta)).amax() < 1e-12);
-        }
     }
 }
 
@@ -165,7 +144,7 @@ fn derivatives_are_those_of_dual_numbers() {
             let along = |which: usize| {
                 let mut inputs = plain();
                 inputs[which] = match which {
-                    0 => kinematics::seed_direction(&model, &theta, &e),
+                    0 => crate::model::seed_direction(&model, &theta, &e),
                     1 => Dual::list(&dtheta, &e),
                     _ => Dual::list(&tau, &e),
                 };
@@ -204,43 +183,6 @@ fn derivatives_are_those_of_dual_numbers() {
 }
 
 #[test]
-fn an_open_start_is_refused_and_a_motor_turns_the_crank() {
-    let (model, theta, dtheta) = closed_four_bar();
-    let options = Options { record_every: 50, ..Options::new(0.5, 500) };
-    let error = model.simulate(&GUESS, &[0.0; 3], Zero, &options).expect_err("open");
-    assert!(error.to_string().contains("violates constraint `loop`"), "{error}");
-    let error = model.simulate(&theta, &[1.0, 1.0, 1.0], Zero, &options).expect_err("cannot move so");
-    assert!(error.to_string().contains("a velocity that violates constraint `loop`"), "{error}");
-    let push = torque(|_, _, _, tau: &mut [f64]| tau[0] = 0.3);
-    let motion = model.simulate(&theta, &dtheta, push, &options).expect("a motion");
-    assert!(motion.largest_drift() < 1e-9 && motion.last().energy.motor_work > 0.0);
-}
-
-#[test]
-fn a_four_bar_stops_at_the_limit_of_its_rocker() {
-    let (model, theta, dtheta) = closed_four_bar();
-    let mut robot = model.description().clone();
-    let rocker = robot.joints.iter_mut().find(|joint| joint.name == "rocker_pivot").expect("there");
-    rocker.limits.position = Some([theta[2] - 0.1, theta[2] + 0.1]);
-    let model = robot.build().expect("sound");
-    let options = Options { joint_limits: Policy::Respect, record_every: 10, ..Options::new(1.0, 1000) };
-    let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero).expect("a motion");
-    assert!(!run.stops.is_empty() && run.stops.iter().all(|stop| stop.joint == "rocker_pivot"), "{:?}", run.stops);
-    let mut energy = f64::INFINITY;
-    for sample in run.motion.samples() {
-        let rows = model.constraint_rows_at(sample.theta, sample.dtheta);
-        let speed = (rows.A * DVector::from_column_slice(sample.dtheta)).amax();
-        assert!(rows.phi.amax() < 1e-9 && speed < 1e-9, "{} {speed} at {}", rows.phi.amax(), sample.t);
-        assert!((sample.theta[2] - theta[2]).abs() < 0.1 + 1e-9, "{} at {}", sample.theta[2], sample.t);
-        let now = sample.energy.kinetic + sample.energy.potential;
-        assert!(now < energy + 1e-4, "{now} {energy}");
-        energy = now;
-    }
-    // an impact is located to a step
-    assert!(run.motion.largest_drift() < 1e-2, "{}", run.motion.largest_drift());
-}
-
-#[test]
 fn the_nearest_closed_position_is_within_the_limits() {
     let (model, theta, _) = closed_four_bar();
     // from far: the other branch of the loop is as closed, but not as near
@@ -259,14 +201,4 @@ fn the_nearest_closed_position_is_within_the_limits() {
     rocker.limits.position = Some([-0.2, 0.2]); // neither branch
     let error = robot.build().expect("sound").assemble(&[theta[0], 0.0, 0.0], &["crank_pivot"]).expect_err("a limit");
     assert!(error.to_string().contains("`rocker_pivot` at "), "{error}");
-}
-
-#[test]
-fn a_hundred_thousand_steps_leave_the_loop_closed() {
-    let (model, theta, dtheta) = closed_four_bar();
-    let options = Options { record_every: 10_000, ..Options::new(100.0, 100_000) };
-    let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero).expect("a motion");
-    assert!(run.closing.residual < 1e-13, "{:?}", run.closing);
-    let at_10_s = (0..run.motion.len()).find(|&k| run.motion.t[k] >= 10.0).expect("recorded");
-    assert!(run.motion.drift(at_10_s).abs() < 1e-6, "{}", run.motion.drift(at_10_s));
 }

@@ -6,10 +6,9 @@ mod turns;
 
 use super::JointOrder;
 use super::joint_order::check_length;
-use crate::api::check_unit;
 use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
-use crate::model::{Error, Freedom, Model};
+use crate::model::{Error, Freedom, Model, check_unit};
 use crate::spatial::Twist;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};

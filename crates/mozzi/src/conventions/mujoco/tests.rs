@@ -1,8 +1,8 @@
 //! Derivatives, power and energy in MuJoCo's coordinates, and round trips.
 
 use super::*;
-use crate::kinematics::integrate;
 use crate::model::Environment;
+use crate::model::integrate;
 use crate::testing::{Random, floating_mixed_tree, floating_tree, mixed_tree, state, tree};
 
 /// A model, its conversion with the joints in reverse order, and its state.

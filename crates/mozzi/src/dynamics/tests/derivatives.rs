@@ -1,7 +1,7 @@
 //! The analytic derivatives against dual numbers, central differences, each other, and identities.
 
 use super::{close, models};
-use crate::kinematics::integrate;
+use crate::model::integrate;
 use crate::model::{Environment, FrameId, Model};
 use crate::quantities::{ForwardDynamicsVjp, InverseDynamicsVjp};
 use crate::testing::{

@@ -1,7 +1,6 @@
 //! Springs against hand calculation, with every algorithm for θ̈, and with mimic joints.
 
 use crate::model::description::{Joint, JointKind, Mimic};
-use crate::simulation::{GravityCompensation, Method, Options, Zero};
 use crate::spatial::{ScrewAxis, SpatialInertia};
 use crate::{Description, Model, SE3, Vec3};
 
@@ -49,21 +48,6 @@ fn a_mimic_joints_spring_acts_on_its_own_variable() {
 }
 
 #[test]
-fn a_mass_on_a_spring_oscillates_at_its_frequency() {
-    let model = springs();
-    // M = m r² + ratio² m, K = k + ratio² k, rest at p / K
-    let (M, K, p) = (0.5 + 12.0, 27.0_f64, 7.0 * 0.4 + 2.0 * 5.0 * 0.4);
-    let (rest, omega) = (p / K, (K / M).sqrt());
-    let options = Options { method: Method::RungeKutta4, ..Options::new(2.0, 2000) };
-    let motion = model.simulate(&[1.0], &[0.0], Zero, &options).expect("a motion");
-    let expected = rest + (1.0 - rest) * (2.0 * omega).cos();
-    assert!((motion.last().theta[0] - expected).abs() < 1e-11, "{:?} {expected}", motion.last());
-    assert!(motion.largest_drift() < 1e-11, "{}", motion.largest_drift());
-    let held = model.simulate(&[1.0], &[0.0], GravityCompensation::new(&model), &options).expect("a motion");
-    assert!((held.last().theta[0] - 1.0).abs() < 1e-12);
-}
-
-#[test]
 fn a_derivative_by_the_stiffness_of_a_spring_that_is_none_is_kept() {
     use crate::{Dual, Scalar, Workspace};
     let mut robot = springs().description().map(Dual::constant);
@@ -108,16 +92,6 @@ fn a_balls_spring_turns_it_back_the_shorter_way() {
         let energy = model.potential_energy(&theta).expect("lengths");
         assert!((energy - torque * torque / 6.0).abs() < 1e-14, "{angle}: {energy}");
     }
-}
-
-#[test]
-fn energy_goes_to_and_fro_between_a_ball_and_its_spring() {
-    let model = sprung_ball();
-    let (theta, dtheta) = ([0.9, 0.3, -0.1, 0.3], [0.4, 0.2, -0.5]);
-    let length = theta.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
-    let options = Options { method: Method::RungeKutta4, ..Options::new(5.0, 5000) };
-    let motion = model.simulate(&theta.map(|x| x / length), &dtheta, Zero, &options).expect("a motion");
-    assert!(motion.largest_drift() < 1e-11, "{}", motion.largest_drift());
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! The gradients of energies, momenta, frames and by the robot, against dual numbers of the quantities themselves.
 
 use super::models;
+use crate::kinematics::{body_jacobian, frame_acceleration};
 use crate::model::{Environment, FrameId, Model, Variation};
 use crate::testing::{Random, moving, state, twist, wrench};
 use crate::workspace::Workspace;
-use crate::{Dual, Twist, Vec3, Wrench, body_jacobian, dynamics as kernel, frame_acceleration};
+use crate::{Dual, Twist, Vec3, Wrench, dynamics as kernel};
 use alloc::format;
 use alloc::vec::Vec;
 

@@ -100,8 +100,11 @@ impl Report<'_> {
                 }
                 _ => {}
             }
-            for (attribute, limit) in [("velocity limit", joint.limits.velocity), ("effort limit", joint.limits.effort)]
-            {
+            for (attribute, limit) in [
+                ("velocity limit", joint.limits.velocity),
+                ("effort limit", joint.limits.effort),
+                ("acceleration limit", joint.limits.acceleration),
+            ] {
                 if limit.is_some_and(|x| !(x >= 0.0)) {
                     self.error(
                         element,

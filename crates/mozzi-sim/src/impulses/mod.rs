@@ -1,0 +1,334 @@
+//! One-sided forces within a step of a simulation: their rows, their solution, and what is remembered of them.
+
+mod account;
+mod near;
+mod position;
+mod rows;
+
+pub use account::OneSidedAccount;
+pub(crate) use rows::{Key, System};
+
+use crate::Error;
+use crate::contacts::{Contacts, Surface};
+use crate::factored_mass::FactoredMass;
+use crate::one_sided::{Law, Problem, solve};
+use crate::{Friction, Options, Policy};
+use alloc::collections::BTreeMap;
+use alloc::vec;
+use alloc::vec::Vec;
+use mozzi::linalg::Vec3;
+use mozzi::model::{Bounds, Model};
+use mozzi::scalar::Scalar;
+use nalgebra::{DMatrix, DVector};
+use near::Cloud;
+use rows::Touching;
+
+/// The residual that is sought, relative to the largest of the velocities b, or to this.
+const TOLERANCE: f64 = 1e-12;
+const LEAST: f64 = 1e-4;
+/// A residual above this is reported as unsolved, m/s.
+const UNSOLVED: f64 = 1e-6;
+/// Repeated solutions in which the friction of more contacts is taken at the middle of the step.
+const SHIFTS: usize = 4;
+/// Contacts nearer than this act at least, m: rounding of positions.
+const NEAR: f64 = 1e-8;
+/// An impact rebounds if it is faster than this many times what the contact gains in the step without contact forces: a
+/// loaded foot would else jump for ever.
+const REBOUND: f64 = 4.0;
+/// A contact that stuck is reported to slide above the first speed, one that slid to stick below the second, m/s.
+const SLIDES: f64 = 1e-6;
+const STICKS: f64 = 1e-9;
+
+/// The one-sided forces of a robot along a motion.
+pub(crate) struct Impulses<'r> {
+    pub model: &'r Model,
+    pub contacts: &'r Contacts<'r>,
+    clouds: Vec<Cloud>,
+    /// The limits that act as stops, joint and side.
+    stops: Option<(Bounds, Vec<(usize, usize)>)>,
+    /// The velocities with dry friction.
+    pub dry: Vec<usize>,
+    /// Contacts at most this far act, m.
+    reach: f64,
+    pub memory: Memory,
+    pub account: OneSidedAccount,
+    /// The force that each pair of a point and a plane applies to the plane, in {s}: three numbers each, N.
+    pub forces: Vec<f64>,
+    /// That of the last system.
+    pub mass: FactoredMass<'r>,
+}
+
+/// The state that a step passes to the next one.
+#[derive(Clone, Default)]
+pub(crate) struct Memory {
+    /// The forces of the last step, in the order of their keys.
+    warm: Vec<(Key, [f64; 3])>,
+    /// Where sticking contact points touch: in the coordinates of the plane.
+    anchors: BTreeMap<(usize, usize), Vec3>,
+    /// The gaps of contacts that rebounded within the step, m.
+    rebounds: BTreeMap<(usize, usize), f64>,
+    /// How far points that came to rest within the step would have to go back, along t₁ and t₂.
+    stopped: BTreeMap<(usize, usize), [f64; 2]>,
+    /// The contacts and stops that carried in the last step, and whether they stick.
+    pub carrying: Vec<(Key, bool)>,
+    /// The contacts and stops that carried since they were near, and whether they stick.
+    pub touching: Vec<(Key, bool)>,
+    /// Joints and sides of stops that were struck and not reported yet.
+    pub struck: Vec<(usize, usize)>,
+}
+
+impl Memory {
+    /// The forces alone.
+    pub fn guess(self) -> Self {
+        Memory { warm: self.warm, ..Memory::default() }
+    }
+}
+
+/// Impulses of a system.
+pub(crate) struct Solved {
+    pub p: DVector<f64>,
+    /// The velocities of the surroundings before the step, at its end without impulses (none if there are none), and at
+    /// its end.
+    pub before: DVector<f64>,
+    pub free: DVector<f64>,
+    pub u: DVector<f64>,
+    pub residual: f64,
+}
+
+/// Whether a contact slides before and after the step in about the same direction. Its friction is then opposite to the
+/// mean of its velocities, which is of second order; only the direction counts, so the mean's law is that of b_t + u_t.
+fn slides_throughout(law: Law, first: usize, p: &DVector<f64>, before: &DVector<f64>, after: &DVector<f64>) -> bool {
+    let Law::Contact { .. } = law else { return false };
+    let product = |a: &DVector<f64>, b: &DVector<f64>| a[first + 1] * b[first + 1] + a[first + 2] * b[first + 2];
+    let (squares, along) = (product(before, before) * product(after, after), product(before, after));
+    p[first] > 0.0 && squares > 1e-32 && along > 0.0 && along * along > 0.25 * squares
+}
+
+/// ‖u_t‖ of a contact.
+fn slip(u: &DVector<f64>, first: usize) -> f64 {
+    let (x, y) = (u[first + 1], u[first + 2]);
+    Scalar::sqrt(x * x + y * y)
+}
+
+impl Solved {
+    /// The solution of a system without rows.
+    pub fn none() -> Self {
+        let none = || DVector::zeros(0);
+        Solved { p: none(), before: none(), free: none(), u: none(), residual: 0.0 }
+    }
+
+    /// The energy that the impulses dissipate and that they give to moving planes, from the velocities before and after
+    /// the step in the axes of its middle, where p acts.
+    pub fn works(&self, system: &System, before: &[f64], after: &[f64]) -> [f64; 2] {
+        let twice = system.relative(before) + system.relative(after);
+        [-0.5 * self.p.dot(&twice), self.p.dot(&system.w)]
+    }
+
+    /// Is p inside its cone, so that the contact sticks?
+    pub fn sticks(&self, system: &System, first: usize, law: Law) -> bool {
+        let Law::Contact { mu } = law else { return false };
+        let g = system.G[(first + 1, first + 1)].max(f64::MIN_POSITIVE);
+        let [x, y] = [1, 2].map(|k| self.p[first + k] - self.u[first + k] / g);
+        let radius = mu * self.p[first];
+        x * x + y * y < radius * radius
+    }
+}
+
+impl<'r> Impulses<'r> {
+    /// None if nothing one-sided acts and `is_forced` is false.
+    pub fn new(
+        model: &'r Model,
+        contacts: &'r Contacts<'r>,
+        options: &Options,
+        is_forced: bool,
+    ) -> Result<Option<Self>, Error> {
+        contacts.check(model)?;
+        let is_dry = options.friction == Friction::Coulomb;
+        let dry: Vec<usize> = (0..model.n()).filter(|&j| is_dry && model.friction()[j] > 0.0).collect();
+        let bounds = Bounds::of(model);
+        let stops = (options.joint_limits == Policy::Respect).then(|| {
+            let sides = crate::events::stops::sides(&bounds);
+            (bounds, sides)
+        });
+        let has_stops = stops.as_ref().is_some_and(|(_, sides)| !sides.is_empty());
+        if dry.is_empty() && contacts.is_empty() && !has_stops && !is_forced {
+            return Ok(None);
+        }
+        let (h, g) = (options.step(), options.gravity.unwrap_or(model.gravity()).norm());
+        Ok(Some(Impulses {
+            model,
+            contacts,
+            clouds: Cloud::all(contacts),
+            stops,
+            dry,
+            reach: (g * h * h).max(NEAR),
+            memory: Memory::default(),
+            account: OneSidedAccount::default(),
+            forces: vec![0.0; 3 * contacts.pairs()],
+            mass: FactoredMass::new(model),
+        }))
+    }
+
+    /// θ̇ ← θ̇ − M⁻¹Jᵀp.
+    pub fn apply(&self, system: &System, p: &DVector<f64>, dtheta: &mut [f64]) {
+        let mut change = system.J.tr_mul(p);
+        self.mass.divide(change.as_mut_slice());
+        dtheta.iter_mut().zip(change.iter()).for_each(|(rate, x)| *rate -= x);
+    }
+
+    /// The impulses of the last step, for a step of h seconds.
+    pub fn guess(&self, system: &System, h: f64) -> DVector<f64> {
+        let mut p = DVector::zeros(system.laws.iter().map(|law| law.rows()).sum());
+        for &(key, first, law) in &system.rows {
+            if let Ok(known) = self.memory.warm.binary_search_by_key(&key, |(key, _)| *key) {
+                (0..law.rows()).for_each(|k| p[first + k] = h * self.memory.warm[known].1[k]);
+            }
+        }
+        p
+    }
+
+    /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
+    pub fn solve(
+        &mut self,
+        system: &mut System,
+        free: DVector<f64>,
+        before: &DVector<f64>,
+        guess: &DVector<f64>,
+    ) -> Solved {
+        let mut b = free.clone();
+        for &(key, first, _) in &system.rows {
+            let gain = (before[first] - free[first]).max(0.0);
+            match key {
+                Key::Contact(point, _) if -before[first] > REBOUND * gain => {
+                    b[first] += self.contacts.points[point].restitution * before[first];
+                }
+                // what opens at first must not be pushed: its mean velocity stays positive
+                Key::Contact(..) | Key::Stop(..) => b[first] += before[first].max(0.0),
+                _ => {}
+            }
+        }
+        let tolerance = TOLERANCE * b.amax().max(LEAST);
+        let G = core::mem::replace(&mut system.G, DMatrix::zeros(0, 0));
+        let mut problem = Problem { G, b, laws: core::mem::take(&mut system.laws) };
+        let mut found = solve(&problem, guess, tolerance);
+        self.account.add(&found);
+        let mut shifted = vec![false; system.rows.len()];
+        for _ in 0..SHIFTS {
+            let u = &problem.G * &found.p + &free;
+            let mut changes = false;
+            for (row, &(_, first, law)) in system.rows.iter().enumerate() {
+                if !shifted[row] && slides_throughout(law, first, &found.p, before, &u) {
+                    for r in law.tangential(first) {
+                        problem.b[r] += before[r];
+                    }
+                    (shifted[row], changes) = (true, true);
+                }
+            }
+            if !changes {
+                break;
+            }
+            found = solve(&problem, &found.p, tolerance);
+            self.account.add(&found);
+        }
+        let u = &problem.G * &found.p + &free;
+        (system.G, system.laws) = (problem.G, problem.laws);
+        Solved { p: found.p, before: before.clone(), free, u, residual: found.residual }
+    }
+
+    /// Remembers the impulses of a step of h seconds that counts.
+    pub fn keep(&mut self, system: &System, solved: &Solved, h: f64) {
+        self.account.keep(solved.residual, solved.p.len());
+        let Memory { warm, carrying, touching, struck, .. } = &mut self.memory;
+        let touched = core::mem::take(touching);
+        carrying.clear();
+        warm.clear();
+        self.forces.fill(0.0);
+        for &(key, first, law) in &system.rows {
+            let mut force = [0.0; 3];
+            (0..law.rows()).for_each(|k| force[k] = solved.p[first + k] / h);
+            warm.push((key, force));
+            let (carries, sticks) = (force[0] > 0.0, solved.sticks(system, first, law));
+            match key {
+                Key::Contact(..) => {
+                    let before = touched.iter().find(|(other, _)| *other == key).map(|&(_, sticks)| sticks);
+                    let speed = slip(&solved.u, first);
+                    touching.extend(match before {
+                        Some(true) => Some((key, !(carries && speed > SLIDES))),
+                        Some(false) => Some((key, carries && speed < STICKS)),
+                        None => carries.then_some((key, sticks)),
+                    });
+                }
+                Key::Stop(k, side) => {
+                    let touched = touched.iter().any(|&(other, _)| other == key);
+                    if carries && !touched {
+                        struck.push((k, side));
+                    }
+                    touching.extend((carries || touched).then_some((key, true)));
+                }
+                _ => {}
+            }
+            if carries && matches!(key, Key::Contact(..) | Key::Stop(..)) {
+                carrying.push((key, sticks));
+            }
+        }
+        warm.sort_unstable_by_key(|(key, _)| *key);
+        self.note_rebounds(system, solved, h);
+        self.note_stopped(system, solved, h);
+        self.set_forces(system, &(&solved.p / h));
+    }
+
+    /// Contacts that came, and go at the end of the step, touched within it: after t_c = gap/|u_n|, and are (h −
+    /// t_c)u_n⁺ away at its end.
+    fn note_rebounds(&mut self, system: &System, solved: &Solved, h: f64) {
+        self.memory.rebounds.clear();
+        for &Touching { pair, first, gap, .. } in &system.touches {
+            let (comes, goes) = (solved.before[first], solved.u[first]);
+            if comes < 0.0 && goes > 0.0 && solved.p[first] > 0.0 {
+                let touches = ((gap - 0.5 * h * comes) / -comes).clamp(0.0, h);
+                self.memory.rebounds.insert(pair, (h - touches) * goes);
+            }
+        }
+    }
+
+    /// Contacts that slid and stick at the end of the step move until they stop, after t_s = h|u_t|/(|u_t| − s), with s
+    /// their speed at its end under full friction: by ½ t_s u_t, not by ½ h u_t.
+    fn note_stopped(&mut self, system: &System, solved: &Solved, h: f64) {
+        let mut p = solved.p.clone();
+        let mut found = Vec::new();
+        for &(key, first, law) in &system.rows {
+            let (Key::Contact(point, plane), Law::Contact { mu }) = (key, law) else { continue };
+            let speed = slip(&solved.before, first);
+            if slip(&solved.u, first) > STICKS {
+                self.memory.stopped.remove(&(point, plane)); // since an earlier part of the step
+            }
+            if speed > 1e-14 && slip(&solved.u, first) < 1e-9 * speed && solved.sticks(system, first, law) {
+                found.push((first, (point, plane), speed));
+                (1..3).for_each(|k| p[first + k] = -mu * p[first] * solved.before[first + k] / speed);
+            }
+        }
+        if found.is_empty() {
+            return;
+        }
+        let u = &system.G * p + &solved.free;
+        for (first, pair, speed) in found {
+            let way = [1, 2].map(|k| solved.before[first + k]);
+            let end = (u[first + 1] * way[0] + u[first + 2] * way[1]) / speed;
+            let rests = if end < 0.0 { h * speed / (speed - end) } else { h };
+            self.memory.stopped.insert(pair, way.map(|u| 0.5 * (h - rests) * u));
+        }
+    }
+
+    /// The contact forces in {s}, from those along the rows.
+    fn set_forces(&mut self, system: &System, force: &DVector<f64>) {
+        for &Touching { pair: (point, plane), first, axes, .. } in &system.touches {
+            let total = axes[0] * force[first] + axes[1] * force[first + 1] + axes[2] * force[first + 2];
+            let pair = point * self.contacts.planes.len() + plane;
+            self.forces[3 * pair..3 * pair + 3].copy_from_slice(&total.0);
+        }
+    }
+
+    /// The planes at a time.
+    pub fn surfaces(&self, t: f64) -> Vec<Surface> {
+        self.contacts.planes.iter().map(|plane| plane.at(t)).collect()
+    }
+}

@@ -1,0 +1,110 @@
+//! The contact points that may touch a plane in a step. What no plane is near is passed over by spheres around it; of
+//! many points of a body at a plane few count: the deepest, and those farthest from the ones before.
+
+use super::{Impulses, Key};
+use crate::contacts::{Contacts, Surface, Touch};
+use alloc::vec::Vec;
+use mozzi::kinematics::forward_kinematics;
+use mozzi::linalg::Vec3;
+use mozzi::model::ContactPoint;
+use mozzi::model::FrameId;
+
+/// Points of a body that touch a plane at once.
+const MOST: usize = 8;
+/// Points that carried in the last step count as if they were farther from others by this factor.
+const CARRIED: f64 = 1.02;
+
+/// The contact points of a frame, within a sphere.
+pub(super) struct Cloud {
+    frame: FrameId,
+    points: Vec<usize>,
+    center: Vec3,
+    radius: f64,
+}
+
+/// A point that may touch, and how deep it may come.
+struct Candidate {
+    point: usize,
+    touch: Touch,
+    gap: f64,
+    carried: bool,
+}
+
+impl Cloud {
+    /// One for each frame with points.
+    pub fn all(contacts: &Contacts) -> Vec<Self> {
+        let mut frames: Vec<FrameId> = contacts.points.iter().map(|point| point.frame).collect();
+        frames.sort_unstable();
+        frames.dedup();
+        let of_frame = |frame| {
+            let points: Vec<usize> =
+                (0..contacts.points.len()).filter(|&k| contacts.points[k].frame == frame).collect();
+            let at = |k: usize| contacts.points[k].center.0;
+            let side = |i: usize, pick: fn(f64, f64) -> f64| points.iter().map(|&k| at(k)[i]).reduce(pick);
+            let middle = |i| 0.5 * (side(i, f64::min).unwrap_or(0.0) + side(i, f64::max).unwrap_or(0.0));
+            let center = Vec3([0, 1, 2].map(middle));
+            let sizes = points.iter().map(|&k| &contacts.points[k]);
+            let radius = sizes.map(|point| (point.center - center).norm() + point.radius()).fold(0.0, f64::max);
+            Cloud { frame, points, center, radius }
+        };
+        frames.into_iter().map(of_frame).collect()
+    }
+}
+
+impl Impulses<'_> {
+    /// The pairs of a point and a plane within reach at θ, or at the robot's next configuration at the time `then`;
+    /// with their touch at θ. Those of a frame follow each other.
+    pub fn near(&self, [t, then]: [f64; 2], theta: &[f64], next: &[f64]) -> Vec<(usize, usize, Touch)> {
+        let (now, later) = (self.surfaces(t), self.surfaces(then));
+        let mut found = Vec::new();
+        for cloud in &self.clouds {
+            let [T, T_next] = [theta, next].map(|theta| forward_kinematics(self.model, theta, cloud.frame));
+            for (plane, (surface, surface_next)) in now.iter().zip(&later).enumerate() {
+                let height = |surface: &Surface, at: Vec3| surface.height(at) - cloud.radius;
+                if height(surface, T * cloud.center).min(height(surface_next, T_next * cloud.center)) > self.reach {
+                    continue;
+                }
+                let candidate = |&point: &usize| {
+                    let of: &ContactPoint = &self.contacts.points[point];
+                    let gap_next = surface_next.touch(of, T_next).gap;
+                    let touch = surface.touch(of, T);
+                    let gap = touch.gap.min(gap_next);
+                    let key = Key::Contact(point, plane);
+                    let carried = gap <= self.reach && self.memory.carrying.iter().any(|&(other, _)| other == key);
+                    Candidate { point, touch, gap, carried }
+                };
+                let near = cloud.points.iter().map(candidate).filter(|candidate| candidate.gap <= self.reach);
+                found.extend(few(near.collect()).into_iter().map(|one| (one.point, plane, one.touch)));
+            }
+        }
+        found
+    }
+}
+
+/// At most [`MOST`] of them, in their order.
+fn few(mut all: Vec<Candidate>) -> Vec<Candidate> {
+    if all.len() <= MOST {
+        return all;
+    }
+    let weight = |of: &Candidate| if of.carried { CARRIED } else { 1.0 };
+    let deepest = all.iter().enumerate().min_by(|(_, a), (_, b)| a.gap.total_cmp(&b.gap)).map_or(0, |(k, _)| k);
+    let mut chosen = alloc::vec![deepest];
+    let mut distances: Vec<f64> = alloc::vec![f64::INFINITY; all.len()];
+    while chosen.len() < MOST {
+        let last = all[chosen[chosen.len() - 1]].touch.at;
+        for (distance, one) in distances.iter_mut().zip(&all) {
+            *distance = distance.min((one.touch.at - last).norm() * weight(one));
+        }
+        let farthest = (0..all.len()).max_by(|&a, &b| distances[a].total_cmp(&distances[b]));
+        match farthest.filter(|&k| distances[k] > 0.0) {
+            Some(k) => chosen.push(k),
+            None => break,
+        }
+    }
+    let mut k = 0;
+    all.retain(|_| {
+        k += 1;
+        chosen.contains(&(k - 1))
+    });
+    all
+}

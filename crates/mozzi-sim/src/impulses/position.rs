@@ -1,0 +1,170 @@
+//! Positions after a step: contacts and stops that carry have no gap, feet that stick stay where they are.
+
+use super::rows::point_row;
+use super::{Impulses, Key};
+use crate::Error;
+use crate::contacts::{PlaneMotion, Touch};
+use alloc::collections::BTreeMap;
+use alloc::vec;
+use alloc::vec::Vec;
+use mozzi::constraints::constraint_jacobian;
+use mozzi::linalg::Vec3;
+use mozzi::model::FrameId;
+use mozzi::model::Support;
+use mozzi::model::integrate;
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+/// Gaps below this are rounding, m.
+const CLOSED: f64 = 1e-13;
+const CORRECTIONS: usize = 3;
+/// Joints this near to a limit are at it, rad or m.
+const AT_LIMIT: f64 = 1e-11;
+/// G is made regular by adding this part of its diagonal, because rows may be redundant.
+const REGULAR: f64 = 1e-10;
+/// And relative to its largest entry: a row of a loop that holds anyway is rounding.
+const NOISE: f64 = 1e-14;
+
+/// A row whose position is to be put right.
+#[allow(clippy::large_enum_variant)] // a short list, made once a step
+enum OpenRow {
+    Constraint(RowDVector<f64>),
+    /// A joint and the side of its limit.
+    Stop(usize, usize),
+    /// A point of a frame, along one of its axes.
+    Point(FrameId, Touch, usize),
+}
+
+impl Impulses<'_> {
+    /// θ ← θ ⊕ δ with the least δᵀMδ that brings the contacts and stops that carried in the last step to gap 0, from
+    /// either side, and sticking points back to their anchors. `h` is the length of the step. Did θ change?
+    pub fn correct(&mut self, t: f64, theta: &mut [f64], h: f64) -> Result<bool, Error> {
+        let stopped = core::mem::take(&mut self.memory.stopped);
+        if self.memory.carrying.is_empty() {
+            self.memory.anchors.clear();
+            return Ok(false);
+        }
+        self.move_anchors(h);
+        self.set_anchors(t, theta, Some(&stopped));
+        let n = self.model.n();
+        let (mut last, mut is_factored, mut changes) = (f64::INFINITY, false, false);
+        for _ in 0..CORRECTIONS {
+            let (open, errors) = self.open_rows(t, theta);
+            let size = errors.amax();
+            if size < CLOSED || !(size < 0.5 * last) {
+                break;
+            }
+            last = size;
+            if !is_factored {
+                self.mass.factor(theta, 0.0, &[])?;
+                is_factored = true;
+            }
+            let J = self.jacobian(theta, open);
+            let mut G = self.delassus(&J);
+            let least = NOISE * G.diagonal().amax() + f64::MIN_POSITIVE;
+            (0..G.nrows()).for_each(|r| G[(r, r)] = G[(r, r)] * (1.0 + REGULAR) + least);
+            let Some(G) = G.cholesky() else { break };
+            let mut change = J.tr_mul(&G.solve(&errors));
+            self.mass.divide(change.as_mut_slice());
+            debug_assert!(change.len() == n);
+            integrate(self.model, theta, change.as_slice(), 1.0);
+            changes = true;
+        }
+        self.set_anchors(t, theta, None);
+        self.put_at_limits(theta);
+        Ok(changes)
+    }
+
+    /// Joints that are at their limits to rounding are there exactly.
+    fn put_at_limits(&self, theta: &mut [f64]) {
+        let Some((bounds, _)) = &self.stops else { return };
+        for &(key, _) in &self.memory.carrying {
+            let Key::Stop(k, side) = key else { continue };
+            if self.room(theta, k, side).abs() < AT_LIMIT {
+                bounds.places[k].put_at_limit(theta, bounds.joints[k][side]);
+            }
+        }
+    }
+
+    /// Rows of the contacts, stops and constraints that hold, and how far to move along them.
+    fn open_rows(&mut self, t: f64, theta: &[f64]) -> (Vec<OpenRow>, DVector<f64>) {
+        let (model, n) = (self.model, self.model.n());
+        let (mut rows, mut errors) = (Vec::new(), Vec::new());
+        let surfaces = self.surfaces(t);
+        for &(key, sticks) in &self.memory.carrying {
+            match key {
+                Key::Stop(k, side) => {
+                    rows.push(OpenRow::Stop(k, side));
+                    errors.push(self.room(theta, k, side));
+                }
+                Key::Contact(point, plane) => {
+                    let frame = self.contacts.points[point].frame;
+                    let touch = self.touch(theta, point, &surfaces[plane]);
+                    rows.push(OpenRow::Point(frame, touch, 0));
+                    errors.push(touch.gap - self.memory.rebounds.get(&(point, plane)).unwrap_or(&0.0));
+                    let anchor = self.memory.anchors.get(&(point, plane));
+                    let Some(anchor) = anchor.filter(|_| sticks) else { continue };
+                    let way = surfaces[plane].T * *anchor - touch.at;
+                    for axis in 1..3 {
+                        rows.push(OpenRow::Point(frame, touch, axis));
+                        errors.push(touch.axes[axis].dot(way));
+                    }
+                }
+                _ => {}
+            }
+        }
+        let m = model.constraint_rows();
+        if m > 0 {
+            let (mut A, mut phi, still) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; n]);
+            constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut phi);
+            rows.extend(A.chunks_exact(n).map(|row| OpenRow::Constraint(RowDVector::from_row_slice(row))));
+            errors.extend(phi.iter().map(|x| -x));
+        }
+        (rows, DVector::from_vec(errors))
+    }
+
+    /// These rows of velocities.
+    fn jacobian(&self, theta: &[f64], open: Vec<OpenRow>) -> DMatrix<f64> {
+        let mut columns = (None, Vec::new());
+        let row = |open: OpenRow| match open {
+            OpenRow::Constraint(row) => row,
+            OpenRow::Stop(k, side) => self.stop_row(theta, k, side),
+            OpenRow::Point(frame, touch, axis) => {
+                self.columns(theta, frame, &mut columns);
+                point_row(&columns.1, &touch, touch.axes[axis])
+            }
+        };
+        DMatrix::from_rows(&open.into_iter().map(row).collect::<Vec<_>>())
+    }
+
+    /// The anchors on belts move with them.
+    fn move_anchors(&mut self, h: f64) {
+        for (&(_, plane), anchor) in &mut self.memory.anchors {
+            if let PlaneMotion::Belt(T, v) = &self.contacts.planes[plane].motion {
+                *anchor += T.R.inverse_mul(*v) * h;
+            }
+        }
+    }
+
+    /// Keeps the anchors of the points that stick, and sets those of points that begin to: where they are, or, of the
+    /// `only` ones that came to rest within the step, by how far they are beyond where they did. A sphere or a disc has
+    /// none: it rolls.
+    fn set_anchors(&mut self, t: f64, theta: &[f64], only: Option<&BTreeMap<(usize, usize), [f64; 2]>>) {
+        let surfaces = self.surfaces(t);
+        let mut kept: BTreeMap<(usize, usize), Vec3> = BTreeMap::new();
+        for &(key, sticks) in &self.memory.carrying {
+            let Key::Contact(point, plane) = key else { continue };
+            if !sticks || self.contacts.points[point].support != Support::Point {
+                continue;
+            }
+            let pair = (point, plane);
+            let known = self.memory.anchors.get(&pair).copied();
+            let here = || surfaces[plane].T.inverse() * self.touch(theta, point, &surfaces[plane]).at;
+            let anchor = match only {
+                None => known.or_else(|| Some(here())),
+                Some(stopped) => known.or_else(|| stopped.get(&pair).map(|&[x, y]| here() + Vec3([x, y, 0.0]))),
+            };
+            kept.extend(anchor.map(|anchor| (pair, anchor)));
+        }
+        self.memory.anchors = kept;
+    }
+}

@@ -1,0 +1,233 @@
+//! The rows of the one-sided forces that act in a step.
+
+use super::Impulses;
+use crate::Error;
+use crate::contacts::{Surface, Touch};
+use crate::factored_mass::Support;
+use crate::one_sided::Law;
+use alloc::vec;
+use alloc::vec::Vec;
+use mozzi::constraints::constraint_jacobian;
+use mozzi::kinematics::{body_jacobian, forward_kinematics, twist_of};
+use mozzi::linalg::Vec3;
+use mozzi::model::{FrameId, Freedom};
+use mozzi::spatial::Twist;
+use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
+
+/// What a block of rows belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Key {
+    /// A row of the robot's constraints.
+    Constraint(usize),
+    /// A joint's lower (0) or upper (1) limit.
+    Stop(usize, usize),
+    /// A velocity.
+    Dry(usize),
+    /// A contact point and a plane.
+    Contact(usize, usize),
+}
+
+/// J, G and the laws at the middle of a step.
+pub(crate) struct System {
+    /// The blocks: what they belong to, their first row, and their law.
+    pub rows: Vec<(Key, usize, Law)>,
+    pub laws: Vec<Law>,
+    /// m × n
+    pub J: DMatrix<f64>,
+    /// The velocity of the surroundings along the rows.
+    pub w: DVector<f64>,
+    /// J M⁻¹Jᵀ
+    pub G: DMatrix<f64>,
+    pub touches: Vec<Touching>,
+}
+
+/// A contact of a system.
+pub(crate) struct Touching {
+    /// The contact point and the plane.
+    pub pair: (usize, usize),
+    /// Its first row.
+    pub first: usize,
+    /// n, t₁ and t₂ in {s}.
+    pub axes: [Vec3; 3],
+    /// The distance at the middle of the step, m.
+    pub gap: f64,
+}
+
+impl System {
+    /// The velocities of the surroundings as seen from the robot.
+    pub fn relative(&self, dtheta: &[f64]) -> DVector<f64> {
+        &self.w - &self.J * DVectorView::from_slice(dtheta, dtheta.len())
+    }
+}
+
+impl Impulses<'_> {
+    /// The velocities of the surroundings as seen from the robot at (t, θ, θ̇), along the rows of a system, which was
+    /// made nearby.
+    pub fn relative_at(&mut self, system: &System, t: f64, theta: &[f64], dtheta: &[f64]) -> DVector<f64> {
+        let (model, n, m) = (self.model, self.model.n(), self.model.constraint_rows());
+        let mut u = DVector::zeros(system.w.len());
+        let mut columns = (None, Vec::new());
+        let surfaces = self.surfaces(t);
+        if m > 0 {
+            let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
+            constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut []);
+            for (r, row) in A.chunks_exact(n).enumerate() {
+                u[r] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
+            }
+        }
+        for &(key, first, _) in &system.rows {
+            match key {
+                Key::Constraint(_) => {}
+                Key::Dry(j) => u[first] = -dtheta[j],
+                Key::Stop(k, side) => {
+                    let row = self.stop_row(theta, k, side);
+                    u[first] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
+                }
+                Key::Contact(point, plane) => {
+                    self.columns(theta, self.contacts.points[point].frame, &mut columns);
+                    let touch = self.touch(theta, point, &surfaces[plane]);
+                    let V = twist_of(&columns.1, dtheta);
+                    let v = touch.R * (V.v + V.w.cross(touch.of_frame));
+                    for k in 0..3 {
+                        u[first + k] = touch.speeds[k] - touch.axes[k].dot(v);
+                    }
+                }
+            }
+        }
+        u
+    }
+
+    /// The rows of a step of h seconds with the middle (t, θ), for the joints with dry friction that are not `sliding`
+    /// and for what is near, on the way from the start (θ, θ̇) to the next θ without impulses. `diagonal` is added to
+    /// the diagonal of M, which stays factored.
+    pub fn system(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        [start, dtheta, next]: [&[f64]; 3],
+        h: f64,
+        diagonal: &[f64],
+        sliding: &[usize],
+    ) -> Result<System, Error> {
+        let (model, n) = (self.model, self.model.n());
+        let m = model.constraint_rows();
+        let expected = m + self.dry.len();
+        let mut rows: Vec<f64> = Vec::with_capacity(expected * n);
+        let (mut w, mut blocks, mut touches) = (Vec::with_capacity(expected), Vec::with_capacity(expected), Vec::new());
+        if m > 0 {
+            let (mut A, still) = (vec![0.0; m * n], vec![0.0; n]);
+            constraint_jacobian(model, theta, &still, &mut self.mass.workspace, &mut A, &mut [], &mut []);
+            for (r, row) in A.chunks_exact(n).enumerate() {
+                blocks.push((Key::Constraint(r), w.len(), Law::Bilateral));
+                rows.extend_from_slice(row);
+                w.push(0.0);
+            }
+        }
+        for &(k, side) in self.sides() {
+            // along the limit's own gradient: a ball may come past the half turn in a step
+            let rate: f64 = self.stop_row(start, k, side).iter().zip(dtheta).map(|(a, rate)| a * rate).sum();
+            if self.room(start, k, side) - h * rate.max(0.0) > super::NEAR {
+                continue;
+            }
+            blocks.push((Key::Stop(k, side), w.len(), Law::Stop));
+            rows.extend(self.stop_row(theta, k, side).iter());
+            w.push(0.0);
+        }
+        for &j in self.dry.iter().filter(|j| !sliding.contains(j)) {
+            blocks.push((Key::Dry(j), w.len(), Law::Dry { most: h * model.friction()[j] }));
+            rows.extend((0..n).map(|k| if k == j { 1.0 } else { 0.0 }));
+            w.push(0.0);
+        }
+        let mut columns = (None, Vec::new());
+        for (point, plane, touch) in self.near([t, t + 0.5 * h], theta, next) {
+            let key = Key::Contact(point, plane);
+            let of = &self.contacts.points[point];
+            let first = w.len();
+            blocks.push((key, first, Law::Contact { mu: of.mu }));
+            self.columns(theta, of.frame, &mut columns);
+            for k in 0..3 {
+                rows.extend(point_row(&columns.1, &touch, touch.axes[k]).iter());
+                w.push(touch.speeds[k]);
+            }
+            touches.push(Touching { pair: (point, plane), first, axes: touch.axes, gap: touch.gap });
+        }
+        self.mass.factor(theta, 1.0, diagonal)?;
+        let J = DMatrix::from_row_slice(w.len(), n, &rows);
+        let G = self.delassus(&J);
+        let laws = blocks.iter().map(|&(_, _, law)| law).collect();
+        Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, touches })
+    }
+
+    /// J M⁻¹Jᵀ: the products of the rows of D^{−½}L⁻ᵀJᵀ.
+    pub fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
+        let (n, m) = (self.model.n(), J.nrows());
+        let (mut Y, mut G) = (J.transpose(), DMatrix::zeros(m, m));
+        // what is not 0, of one row after the other, and where each ends
+        let (mut entries, mut ends) = (Vec::with_capacity(m * n), Vec::with_capacity(m + 1));
+        let mut support = Support::default();
+        ends.push(0);
+        for a in 0..m {
+            let (before, rest) = Y.as_mut_slice().split_at_mut(a * n);
+            let y = &mut rest[..n];
+            self.mass.halve(y, &mut support);
+            entries.extend(support.places.iter().map(|&k| (k, y[k])));
+            ends.push(entries.len());
+            let sparse = |b: usize| &entries[ends[b]..ends[b + 1]];
+            for b in 0..=a {
+                let dense = if b < a { &before[b * n..][..n] } else { &*y };
+                let (few, all) = if sparse(b).len() < sparse(a).len() { (sparse(b), &*y) } else { (sparse(a), dense) };
+                let product: f64 = few.iter().map(|&(k, y)| y * all[k]).sum();
+                (G[(a, b)], G[(b, a)]) = (product, product);
+            }
+        }
+        G
+    }
+
+    /// A contact point next to a plane.
+    pub fn touch(&self, theta: &[f64], point: usize, surface: &Surface) -> Touch {
+        let of = &self.contacts.points[point];
+        surface.touch(of, forward_kinematics(self.model, theta, of.frame))
+    }
+
+    /// The body Jacobian of a frame, unless the columns are already its.
+    pub(super) fn columns(&self, theta: &[f64], frame: FrameId, (of, columns): &mut (Option<FrameId>, Vec<Twist>)) {
+        if *of != Some(frame) {
+            columns.resize(self.model.n(), Twist::zero());
+            body_jacobian(self.model, theta, frame, columns);
+            *of = Some(frame);
+        }
+    }
+
+    /// The limits that act as stops.
+    pub fn sides(&self) -> &[(usize, usize)] {
+        self.stops.as_ref().map_or(&[], |(_, sides)| sides)
+    }
+
+    /// How far joint k is from its limit.
+    pub fn room(&self, theta: &[f64], k: usize, side: usize) -> f64 {
+        self.stops.as_ref().map_or(f64::INFINITY, |(bounds, _)| {
+            let ([low, high], value) = (bounds.joints[k], bounds.value(theta, k));
+            if side == 0 { value - low } else { high - value }
+        })
+    }
+
+    /// The rate of the joint towards its limit.
+    pub(super) fn stop_row(&self, theta: &[f64], k: usize, side: usize) -> RowDVector<f64> {
+        let mut row = RowDVector::zeros(self.model.n());
+        if let Some((bounds, _)) = &self.stops {
+            let place = bounds.places[k];
+            let sign = if side == 0 { -1.0 } else { 1.0 };
+            let gradient = place.bounded_gradient(theta);
+            let count = if place.freedom == Freedom::Ball { 3 } else { 1 };
+            (0..count).for_each(|i| row[place.j + i] = sign * gradient[i]);
+        }
+        row
+    }
+}
+
+/// The velocity of the material at a touching point along an axis in {s}, from the body Jacobian of its frame.
+pub(super) fn point_row(columns: &[Twist], touch: &Touch, axis: Vec3) -> RowDVector<f64> {
+    let axis = touch.R.inverse_mul(axis);
+    let moment = touch.of_frame.cross(axis);
+    RowDVector::from_iterator(columns.len(), columns.iter().map(|V| V.v.dot(axis) + V.w.dot(moment)))
+}

@@ -1,0 +1,95 @@
+//! Steps with dry friction, contacts and stops.
+
+use crate::Error;
+use crate::contacts::{ContactChange, ContactEvent};
+use crate::course::{Course, Integrator};
+use crate::impulses::{Impulses, Key};
+use crate::methods::moreau::Phase;
+use alloc::vec::Vec;
+
+/// At most this many events of contacts are recorded.
+const MOST_EVENTS: usize = 10_000;
+
+impl Course<'_> {
+    /// θ̈ and the contact forces at the start: those of a first step that does not count.
+    pub(crate) fn start_impulses(&mut self) -> Result<(), Error> {
+        if self.impulses.is_none() || self.options.duration == 0.0 {
+            return Ok(());
+        }
+        let start = self.motion.clone();
+        self.impulses_over(self.options.step())?;
+        let mean: Vec<f64> = self.motion.ddtheta.clone();
+        self.motion = start;
+        self.motion.ddtheta.copy_from_slice(&mean);
+        if let Some(impulses) = &mut self.impulses {
+            impulses.forget();
+        }
+        let crate::Motion { t, theta, dtheta, .. } = &self.motion;
+        self.driven.equation.find_tau(*t, theta, dtheta)
+    }
+
+    /// Records which contacts have begun or ceased to carry or to slide.
+    fn note_contacts(&mut self, t: f64) {
+        let Some(impulses) = self.impulses.as_deref() else { return };
+        let mut now = impulses.memory.touching.clone();
+        now.retain(|(key, _)| matches!(key, Key::Contact(..)));
+        if now == self.touching {
+            return;
+        }
+        let state = |list: &[(Key, bool)], key: Key| list.iter().find(|(other, _)| *other == key).map(|(_, s)| *s);
+        let mut keys: Vec<Key> = now.iter().chain(&self.touching).map(|(key, _)| *key).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        for key in keys {
+            let change = match (state(&self.touching, key), state(&now, key)) {
+                (None, Some(_)) => ContactChange::TouchDown,
+                (Some(_), None) => ContactChange::LiftOff,
+                (Some(false), Some(true)) => ContactChange::Sticks,
+                (Some(true), Some(false)) => ContactChange::Slides,
+                _ => continue,
+            };
+            let Key::Contact(point, plane) = key else { continue };
+            let contact = impulses.contacts.name(point, plane);
+            if self.ending.contact_events.len() < MOST_EVENTS {
+                self.ending.contact_events.push(ContactEvent { t, contact, change });
+            }
+        }
+        self.touching = now;
+    }
+
+    /// A step of h seconds, which ends at a time.
+    pub(crate) fn impulse_step(&mut self, h: f64, end: f64) -> Result<(), Error> {
+        self.impulses_over(h)?;
+        self.motion.t = end;
+        let Some(impulses) = &mut self.impulses else { return Ok(()) };
+        for (k, side) in impulses.memory.struck.drain(..) {
+            self.stops.note_impulse(end, k, side);
+        }
+        self.note_contacts(end);
+        Ok(())
+    }
+
+    /// h seconds on. θ̈ becomes the mean acceleration.
+    fn impulses_over(&mut self, h: f64) -> Result<(), Error> {
+        let Course { impulses: Some(impulses), driven, motion, integrator, .. } = self else { return Ok(()) };
+        let Integrator::MoreauJean(method) = integrator else { return Ok(()) };
+        let (theta, dtheta) = (motion.theta.clone(), motion.dtheta.clone());
+        let mut phase = Phase { t: motion.t, theta, dtheta, works: motion.integrals };
+        method.step(driven, impulses, &mut phase, h)?;
+        for (rate, (after, before)) in motion.ddtheta.iter_mut().zip(phase.dtheta.iter().zip(&motion.dtheta)) {
+            *rate = (after - before) / h;
+        }
+        motion.theta.copy_from_slice(&phase.theta);
+        motion.dtheta.copy_from_slice(&phase.dtheta);
+        motion.integrals = phase.works;
+        Ok(())
+    }
+}
+
+impl Impulses<'_> {
+    /// After a step that does not count: its forces are the guess of the first that does.
+    fn forget(&mut self) {
+        self.account = crate::OneSidedAccount::default();
+        self.memory = core::mem::take(&mut self.memory).guess();
+    }
+}

@@ -1,0 +1,91 @@
+//! The alternating direction method of multipliers for cone complementarity with De Saxcé's term (Carpentier, Le Lidec
+//! and Montaut 2024).
+
+use super::Problem;
+use mozzi::scalar::Scalar;
+use nalgebra::{DMatrix, DVector, Dyn, LU};
+
+/// The proximal weight, relative to the largest eigenvalue.
+const PROXIMAL: f64 = 1e-9;
+/// A penalty is adapted after this many iterations, if the two residuals differ by more than this factor.
+const EVERY: usize = 10;
+const APART: f64 = 10.0;
+
+pub(super) struct Admm {
+    p: DVector<f64>,
+    y: DVector<f64>,
+    z: DVector<f64>,
+    rho: f64,
+    /// The largest eigenvalue of G.
+    largest: f64,
+    factors: LU<f64, Dyn, Dyn>,
+    iterations: usize,
+    done: bool,
+}
+
+impl Admm {
+    pub fn new(problem: &Problem, guess: &DVector<f64>) -> Self {
+        let values = problem.G.clone().symmetric_eigenvalues();
+        let largest = values.max().max(f64::MIN_POSITIVE);
+        let positive = values.iter().filter(|x| **x > 1e-9 * largest).fold(largest, |least, x| least.min(*x));
+        let rho = Scalar::sqrt(positive.max(1e-3 * largest) * largest);
+        let mut y = guess.clone();
+        problem.project(&mut y);
+        let factors = shifted(problem, PROXIMAL * largest + rho);
+        let z = problem.velocity(guess);
+        Admm { p: guess.clone(), y, z, rho, largest, factors, iterations: 0, done: false }
+    }
+
+    /// The latest impulses that are admissible.
+    pub fn impulses(&self) -> &DVector<f64> {
+        &self.y
+    }
+
+    /// Have both residuals fallen below the tolerance?
+    pub fn is_done(&self) -> bool {
+        self.done
+    }
+
+    /// At most this many iterations; returns their number.
+    pub fn iterate(&mut self, problem: &Problem, tolerance: f64, most: usize) -> usize {
+        let eta = PROXIMAL * self.largest;
+        for done in 1..=most {
+            let mut right = &self.p * eta + &self.y * self.rho + &self.z - &problem.b;
+            for (first, law) in problem.blocks() {
+                right[first] -= law.shift(&self.z.as_slice()[first..first + law.rows()]);
+            }
+            if !self.factors.solve_mut(&mut right) {
+                self.done = true;
+                return done;
+            }
+            self.p = right;
+            let before = core::mem::replace(&mut self.y, &self.p - &self.z / self.rho);
+            problem.project(&mut self.y);
+            let gap = &self.p - &self.y;
+            self.z -= &gap * self.rho;
+            let (primal, dual) = (gap.amax(), self.rho * (&self.y - before).amax());
+            if (primal * self.largest).max(dual) <= tolerance {
+                self.done = true;
+                return done;
+            }
+            self.iterations += 1;
+            if self.iterations.is_multiple_of(EVERY) {
+                let factor = match (primal * self.rho > APART * dual, dual > APART * primal * self.rho) {
+                    (true, _) => 2.0,
+                    (_, true) => 0.5,
+                    _ => continue,
+                };
+                self.rho *= factor;
+                self.factors = shifted(problem, eta + self.rho);
+            }
+        }
+        most
+    }
+}
+
+/// G + shift 1, factored.
+fn shifted(problem: &Problem, shift: f64) -> LU<f64, Dyn, Dyn> {
+    let mut G: DMatrix<f64> = problem.G.clone();
+    (0..G.nrows()).for_each(|r| G[(r, r)] += shift);
+    G.lu()
+}

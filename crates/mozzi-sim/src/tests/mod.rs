@@ -1,0 +1,9 @@
+//! Simulations compared with closed-form solutions, and the robots they use.
+
+mod against_stops;
+mod balls;
+mod constraints;
+mod free_base;
+pub mod robots;
+mod simulate;
+mod springs;

@@ -1,0 +1,5 @@
+//! The tests in one program: each links the crate and all that it needs.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+mod allocation;
+mod one_sided;

@@ -1,0 +1,179 @@
+//! Balls that bounce, wheels and balls that roll, planes that move.
+
+use super::robots::by;
+use mozzi::{Description, Model, SE3, Solid, SpatialInertia, Sym3, Twist, Vec3};
+use mozzi_sim::{ContactPoint, Contacts, Method, Options, Plane, PlaneMotion, Run, Simulation, Support, Zero};
+
+const G: f64 = 9.81;
+pub const RADIUS: f64 = 0.1;
+
+/// A solid ball of 0.5 kg that floats.
+pub fn ball() -> Model {
+    Description::new("ball")
+        .link("ball", Solid::Sphere { radius: RADIUS }.inertia(0.5))
+        .floating()
+        .build()
+        .expect("sound")
+}
+
+fn contact(model: &Model, link: &str, support: Support, mu: f64, restitution: f64) -> ContactPoint {
+    let point = ContactPoint::new(link, model.frame(link).expect("there"), Vec3::zero(), mu);
+    ContactPoint { support, restitution, ..point }
+}
+
+pub fn rolling(
+    model: &Model,
+    plane: Plane<'static>,
+    mu: f64,
+    restitution: f64,
+    start: [[f64; 3]; 3],
+    options: Options,
+) -> Run {
+    let contacts = Contacts {
+        points: vec![contact(model, "ball", Support::Sphere { radius: RADIUS }, mu, restitution)],
+        planes: vec![plane],
+    };
+    let [p, w, v] = start;
+    let theta = [1.0, 0.0, 0.0, 0.0, p[0], p[1], p[2]];
+    let dtheta = [w, v].concat();
+    Simulation { contacts, ..Simulation::new(options) }.run(model, &theta, &dtheta, Zero).expect("a motion")
+}
+
+/// Height of a ball dropped from 1 m with restitution e.
+pub fn bounced(t: f64, e: f64) -> f64 {
+    let fall = (2.0 / G).sqrt();
+    if t < fall {
+        return 1.0 - 0.5 * G * t * t;
+    }
+    let (mut t, mut v) = (t - fall, e * (2.0 * G).sqrt());
+    while v > 1e-12 {
+        if t < 2.0 * v / G {
+            return v * t - 0.5 * G * t * t;
+        }
+        t -= 2.0 * v / G;
+        v *= e;
+    }
+    0.0
+}
+
+#[test]
+fn a_ball_bounces() {
+    let model = ball();
+    for step in [1e-3, 1e-4] {
+        let start = [[0.0, 0.0, 1.0 + RADIUS], [0.0; 3], [0.0; 3]];
+        let run = rolling(&model, Plane::ground(), 0.5, 0.8, start, by(Method::MoreauJean, 6.0, step));
+        let mut worst = 0.0_f64;
+        for row in run.motion.samples().step_by(10) {
+            worst = worst.max((row.theta[6] - RADIUS - bounced(row.t, 0.8)).abs());
+        }
+        let last = run.motion.last();
+        println!(
+            "{step:e} s: largest error {worst:.1e} m, at the end gap {:.1e} m, speed {:.1e} m/s, {:?}",
+            last.theta[6] - RADIUS,
+            last.dtheta[5],
+            run.one_sided.expect("contacts")
+        );
+        assert!(worst < 10.0 * step && last.dtheta[5].abs() < 1e-10);
+    }
+}
+
+#[test]
+fn a_ball_begins_to_roll() {
+    // it slides until v = ωr, at 5/7 of its first speed, after 2v₀/(7μg)
+    let (model, v, mu) = (ball(), 1.4, 0.2);
+    let start = [[0.0, 0.0, RADIUS], [0.0; 3], [v, 0.0, 0.0]];
+    let rolls = 2.0 * v / (7.0 * mu * G);
+    for (step, bound) in [(1e-3, 2e-6), (5e-4, 1e-6)] {
+        let run = rolling(&model, Plane::ground(), mu, 0.0, start, by(Method::MoreauJean, 1.0, step));
+        let last = run.motion.last();
+        let way = v * rolls - 0.5 * mu * G * rolls * rolls + 5.0 / 7.0 * v * (1.0 - rolls);
+        let twist = &last.dtheta;
+        let speed = (twist[3].powi(2) + twist[4].powi(2) + twist[5].powi(2)).sqrt();
+        let lost = 0.5 * 0.5 * v * v * 2.0 / 7.0;
+        println!(
+            "{step:e} s: way error {:.1e} m, speed error {:.1e} m/s, height {:.1e} m, loss error {:.1e} J",
+            last.theta[4] - way,
+            speed - 5.0 / 7.0 * v,
+            last.theta[6] - RADIUS,
+            last.energy.friction_loss - lost
+        );
+        assert!((last.theta[4] - way).abs() < bound && (speed - 5.0 / 7.0 * v).abs() < bound);
+        assert!((last.theta[6] - RADIUS).abs() < 1e-12 && (last.energy.friction_loss - lost).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn a_wheel_rolls_down_inside_the_cone_and_slides_outside() {
+    // a thin wheel, I = ½mr² about its axis y, on a slope: it rolls with ⅔ g sin α as long as tan α ≤ 3μ
+    let across = 0.5 * RADIUS * RADIUS;
+    let wheel = SpatialInertia::new(1.0, Vec3::zero(), Sym3::diagonal(0.5 * across, across, 0.5 * across));
+    let model = Description::new("wheel").link("wheel", wheel).floating().build().expect("sound");
+    let angle = 20_f64.to_radians();
+    let turn = mozzi::SO3::exp(Vec3([0.0, angle, 0.0]));
+    for (mu, a) in [(0.2, 2.0 / 3.0 * G * angle.sin()), (0.1, G * (angle.sin() - 0.1 * angle.cos()))] {
+        let support = Support::Disc { axis: Vec3([0.0, 1.0, 0.0]), radius: RADIUS };
+        let contacts = Contacts {
+            points: vec![contact(&model, "wheel", support, mu, 0.0)],
+            planes: vec![Plane::fixed("slope", SE3::new(turn, Vec3::zero()))],
+        };
+        let theta = SE3::new(turn, turn * Vec3([0.0, 0.0, RADIUS])).to_pose();
+        let simulation = Simulation { contacts, ..Simulation::new(by(Method::Automatic, 1.0, 1e-3)) };
+        let run = simulation.run(&model, &theta, &[0.0; 6], Zero).expect("a motion");
+        let way = turn.inverse_mul(Vec3(std::array::from_fn(|k| run.motion.last().theta[4 + k])));
+        let twist = run.motion.last().dtheta;
+        // the velocity of the wheel's lowest point, in the axes of the slope
+        let speed = (twist[3].powi(2) + twist[5].powi(2)).sqrt();
+        println!(
+            "μ {mu}: way error {:.1e} m, height {:.1e}, slip {:.1e} m/s",
+            way.0[0] - 0.5 * a,
+            way.0[2] - RADIUS,
+            speed - RADIUS * twist[1]
+        );
+        assert!((way.0[0] - 0.5 * a).abs() < 1e-9 && (way.0[2] - RADIUS).abs() < 1e-10);
+        let slip = speed - RADIUS * twist[1];
+        assert!(if mu == 0.2 { slip.abs() < 1e-10 } else { slip > 0.1 });
+    }
+}
+
+#[test]
+fn planes_move() {
+    let model = ball();
+    // a lift that accelerates carries the ball
+    let lift = PlaneMotion::Moving(Box::new(|t: f64| {
+        (SE3::translation([0.0, 0.0, 0.5 * t * t]), Twist { w: Vec3::zero(), v: Vec3([0.0, 0.0, t]) })
+    }));
+    let plane = Plane { name: "lift".into(), motion: lift };
+    let start = [[0.0, 0.0, RADIUS], [0.0; 3], [0.0; 3]];
+    let run = rolling(&model, plane, 0.5, 0.0, start, by(Method::Automatic, 1.0, 1e-3));
+    let last = run.motion.last();
+    let weight = -last.contact_forces[2];
+    println!(
+        "lift: height error {:.1e} m, speed error {:.1e} m/s, force error {:.1e} N, work {:.6} J",
+        last.theta[6] - RADIUS - 0.5,
+        last.dtheta[5] - 1.0,
+        weight - 0.5 * (G + 1.0),
+        last.energy.applied_work
+    );
+    assert!((last.theta[6] - RADIUS - 0.5).abs() < 1e-9 && (weight - 0.5 * (G + 1.0)).abs() < 1e-6);
+    // −½ v² m − m g z
+    assert!((last.energy.applied_work + 0.25 + 0.5 * G * 0.5).abs() < 1e-4 && run.motion.largest_drift() < 1e-4);
+
+    // a belt at 1 m/s below a box that does not roll: it slides until it moves along
+    let model =
+        Description::new("box").link("ball", Solid::Box([0.2; 3]).inertia(0.5)).floating().build().expect("sound");
+    let frame = model.frame("ball").expect("there");
+    let points = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let points = points.map(|[x, y]| ContactPoint::new("corner", frame, Vec3([0.1 * x, 0.1 * y, -0.1]), 0.3));
+    let belt = Plane { name: "belt".into(), motion: PlaneMotion::Belt(SE3::identity(), Vec3([1.0, 0.0, 0.0])) };
+    let contacts = Contacts { points: points.to_vec(), planes: vec![belt] };
+    let simulation = Simulation { contacts, ..Simulation::new(by(Method::Automatic, 2.0, 1e-3)) };
+    let run = simulation.run(&model, &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1], &[0.0; 6], Zero).expect("a motion");
+    let last = run.motion.last();
+    let slips = 1.0 / (0.3 * G);
+    println!(
+        "belt: way error {:.1e} m, speed error {:.1e} m/s",
+        last.theta[4] - (2.0 - 0.5 * slips),
+        last.dtheta[3] - 1.0
+    );
+    assert!((last.theta[4] - (2.0 - 0.5 * slips)).abs() < 1e-6 && (last.dtheta[3] - 1.0).abs() < 1e-9);
+}

@@ -1,0 +1,81 @@
+//! Stops as impulses, next to dry friction.
+
+use super::robots::{block, by};
+use mozzi_sim::{Friction, Method, Options, Policy, Simulation, Trajectory, Zero, torque};
+
+#[test]
+fn a_block_is_pushed_against_its_stop_and_pulled_away() {
+    // 2 kg, friction 1 N, pushed by 5 N from 0 to a stop at 0.3 m, from 1 s on pulled by 3 N
+    let model = block(2.0, 0.0, 1.0, Some([-1.0, 0.3]));
+    let motor = || torque(|t, _, _, tau| tau[0] += if t < 1.0 { 5.0 } else { -3.0 });
+    {
+        let (method, bound) = (Method::Automatic, 1e-3);
+        let options = Options { joint_limits: Policy::Respect, ..by(method, 1.5, 1e-3) };
+        let run = Simulation::new(options).run(&model, &[0.0], &[0.0], motor()).expect("a motion");
+        let at = |t: f64| run.motion.sample((t * 1e3).round() as usize);
+        let impact = (2.0 * 0.3 / 2.0_f64).sqrt();
+        let last = run.motion.last();
+        let expected = 0.3 - 0.5 * 1.0 * 0.25;
+        println!(
+            "{:20} at rest {:.1e} m beyond, speed {:.1e}, end error {:.1e} m, {:?}",
+            method.name(),
+            at(0.9).theta[0] - 0.3,
+            at(0.9).dtheta[0],
+            last.theta[0] - expected,
+            run.stops
+        );
+        assert!((at(0.9).theta[0] - 0.3).abs() < 1e-12 && at(0.9).dtheta[0].abs() < 1e-12);
+        assert!((last.theta[0] - expected).abs() < bound);
+        let [stop] = &run.stops[..] else { panic!("{:?}", run.stops) };
+        assert!((stop.first - impact).abs() < 3e-3 && stop.limit == 0.3 && stop.times == 1);
+        // the impact's energy is lost
+        let lost = 5.0 * 0.3 + 1.0 * (0.3 - expected);
+        assert!((last.energy.friction_loss - lost).abs() < 0.02, "{:?} {lost}", last.energy);
+    }
+}
+
+#[test]
+fn smooth_methods_refuse_what_they_have_not() {
+    let smooth = [
+        Method::Euler,
+        Method::SemiImplicitEuler,
+        Method::RungeKutta4,
+        Method::Midpoint,
+        Method::DormandPrince { tolerance: 1e-9 },
+    ];
+    for method in smooth {
+        // a stop is an error when it acts, with the motion until then
+        let model = block(2.0, 0.0, 0.0, Some([-1.0, 0.3]));
+        let options = Options { joint_limits: Policy::Respect, ..by(method, 1.0, 1e-2) };
+        let mut rows = Trajectory::new(&model);
+        let go_on = |_| std::ops::ControlFlow::Continue(());
+        let error = Simulation::new(options).stream(&model, &[0.0], &[1.0], Zero, &mut rows, go_on);
+        let error = error.expect_err("a stop").to_string();
+        assert!(error.contains("`slide` reaches its limit 0.3 at t = 0.3") && error.contains("`moreau`"), "{error}");
+        assert_eq!(rows.len(), 30);
+        // dry friction at once
+        let model = block(2.0, 0.0, 1.0, None);
+        let error = Simulation::new(by(method, 1.0, 1e-2)).run(&model, &[0.0], &[1.0], Zero).expect_err("refused");
+        let error = error.to_string();
+        assert!(error.contains(method.name()) && error.contains("dry friction of `slide`"), "{error}");
+        let smooth = Friction::Smooth { slip_speed: 1e-2 };
+        let run = Simulation::new(Options { friction: smooth, ..by(method, 0.1, 1e-3) });
+        assert!(run.run(&model, &[0.0], &[1.0], Zero).expect("a motion").motion.complete);
+    }
+}
+
+#[test]
+fn limits_that_are_respected_make_the_method_moreaus() {
+    for (limits, policy, expected) in [
+        (Some([-1.0, 0.3]), Policy::Respect, Method::MoreauJean),
+        (Some([-1.0, 0.3]), Policy::Report, Method::RungeKutta4),
+        (None, Policy::Respect, Method::RungeKutta4),
+    ] {
+        let options = Options { joint_limits: policy, ..by(Method::Automatic, 1.0, 1e-3) };
+        let run = Simulation::new(options).run(&block(2.0, 0.0, 0.0, limits), &[0.0], &[1.0], Zero).expect("a motion");
+        assert_eq!(run.method, expected);
+        if expected == Method::MoreauJean {
+            assert!((run.stops[0].first - 0.3).abs() < 2e-3 && (run.motion.last().theta[0] - 0.3).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Did you mean …?
+
+use mozzi::spelling::distance;
+
+/// The known word nearest to an unknown one, if it is near enough for a misspelling.
+pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    if word.len() > 64 {
+        return None;
+    }
+    let lower = word.to_lowercase();
+    let near = |known: &'k str| {
+        let d = distance(&lower, &known.to_lowercase());
+        // one slip in three letters or more, two in six, three in nine
+        (d <= word.chars().count().min(known.chars().count()) / 3).then_some((d, known))
+    };
+    let letters = |word: &str| {
+        let mut letters: Vec<char> = word.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    // among equally near words, prefer those with the same letters: `iyx` is `ixy`, not `ixx`
+    let rank = |&(d, known): &(usize, &str)| (d, letters(known) != letters(&lower));
+    known.into_iter().filter(|known| known.len() <= 64).filter_map(near).min_by_key(rank).map(|(_, known)| known)
+}
+
+/// A known name that ends in the given one, which lacks its prefix.
+pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    let is_longer = |known: &&str| {
+        name.len() > 2 && known.strip_suffix(name).is_some_and(|start| start.ends_with(['_', '/', '-', '.']))
+    };
+    known.into_iter().find(is_longer).map(meant)
+}
+
+/// "did you mean `x`?"
+pub(crate) fn meant(word: &str) -> String {
+    format!("did you mean `{word}`?")
+}
+
+/// The same for the known word nearest to an unknown one, if it is near enough for a misspelling.
+pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    nearest(word, known).map(meant)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_are_near_and_other_words_are_not() {
+        assert_eq!(nearest("intertial", ["inertial", "visual"]), Some("inertial"));
+        assert_eq!(nearest("Lower", ["upper", "lower"]), Some("lower"));
+        assert_eq!(nearest("revolut", ["revolute"]), Some("revolute"));
+        assert_eq!(nearest("xzy", ["xyz", "rpy"]), Some("xyz"));
+        assert_eq!(nearest("gravity", ["inertial", "visual", "collision"]), None);
+        assert_eq!(nearest("iyx", ["ixx", "iyy", "ixy"]), Some("ixy"));
+        assert_eq!(nearest("D", ["damping"]), None);
+        assert_eq!(distance("", "abc"), 3);
+        let longer = longer_name("index_q1", ["index", "Left_index_q1"]);
+        assert_eq!(longer.as_deref(), Some("did you mean `Left_index_q1`?"));
+    }
+}

@@ -1,0 +1,71 @@
+//! Points of a robot that planes can touch.
+
+use super::FrameId;
+use crate::linalg::Vec3;
+use alloc::string::String;
+
+/// A point, or a rounded end, of a robot that planes stop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// The name in results.
+    pub name: String,
+    /// The frame that carries it.
+    pub frame: FrameId,
+    /// The point, or the centre of the rounding, in the frame, m.
+    pub center: Vec3,
+    /// What is around the centre.
+    pub support: Support,
+    /// The coefficient of friction μ, at least 0.
+    pub mu: f64,
+    /// The coefficient of restitution e, 0 to 1: u_n⁺ = −e u_n⁻.
+    pub restitution: f64,
+}
+
+/// The shape around the centre of a contact point; the point that is nearest to a plane touches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Support {
+    /// The point itself.
+    Point,
+    /// A sphere, for example an end of a capsule. A sphere rolls.
+    Sphere {
+        /// m
+        radius: f64,
+    },
+    /// A thin disc, for example a wheel or the rim of a cylinder.
+    Disc {
+        /// The axis of the disc in the frame; its length does not matter.
+        axis: Vec3,
+        /// m
+        radius: f64,
+    },
+}
+
+impl ContactPoint {
+    /// A sharp point, without restitution.
+    pub fn new(name: impl Into<String>, frame: FrameId, center: Vec3, mu: f64) -> Self {
+        ContactPoint { name: name.into(), frame, center, support: Support::Point, mu, restitution: 0.0 }
+    }
+
+    /// How far what is around the centre reaches from it, m.
+    pub fn radius(&self) -> f64 {
+        match self.support {
+            Support::Point => 0.0,
+            Support::Sphere { radius } | Support::Disc { radius, .. } => radius,
+        }
+    }
+
+    /// The point that is farthest in a direction, in the frame.
+    pub fn farthest(&self, direction: Vec3) -> Vec3 {
+        match self.support {
+            Support::Point => self.center,
+            Support::Sphere { radius } => self.center + direction * radius,
+            Support::Disc { axis, radius } => {
+                let axis = axis * (1.0 / axis.norm());
+                let within = direction - axis * axis.dot(direction);
+                let size = within.norm();
+                // a disc that lies flat touches with its centre
+                if size > 1e-12 { self.center + within * (radius / size) } else { self.center }
+            }
+        }
+    }
+}
