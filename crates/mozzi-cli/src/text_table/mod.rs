@@ -38,12 +38,12 @@ impl TextTable {
         let name = input::name(file).to_string();
         check_kind(file)?;
         let mut lines = Lines::of(Input::open(file)?);
-        let mut begin = Vec::new();
+        let (mut begin, mut found) = (Vec::new(), 0);
         let is_all = loop {
             let mut piece = vec![0; 1 << 16];
             let count = lines.read(&mut piece).map_err(|error| Failure::wrong(format!("{name}: {error}")))?;
             begin.extend(&piece[..count]);
-            let found = begin.iter().filter(|&&byte| byte == b'\n').count();
+            found += piece[..count].iter().filter(|&&byte| byte == b'\n').count();
             if count == 0 || found >= LINES {
                 break count == 0;
             }
