@@ -67,7 +67,8 @@ impl TextTable {
             rest = Box::new(Blanks::of(rest));
         }
         let mut builder = csv::ReaderBuilder::new();
-        builder.has_headers(false).delimiter(dialect.separator.byte()).trim(csv::Trim::All).flexible(true);
+        // cells are trimmed when they are read: csv would copy each row for that
+        builder.has_headers(false).delimiter(dialect.separator.byte()).flexible(true);
         let reader = builder.comment(Some(b'#')).from_reader(rest);
         let header = Header {
             names: dialect.names.clone(),
@@ -108,7 +109,7 @@ impl TextTable {
             let line = record.position().map_or(0, csv::Position::line) + skipped;
             progress.at(record.position().map_or(0, |position| position.byte() / 1000) as usize);
             let found = record.len();
-            let has_end = found == expected + 1 && record.get(expected) == Some("");
+            let has_end = found == expected + 1 && record.get(expected).is_some_and(|cell| cell.trim().is_empty());
             let lacks_end = found + 1 == expected && self.header.names.last().is_some_and(String::is_empty);
             if found == expected || has_end || lacks_end {
                 each(line, &record)?;
@@ -184,7 +185,7 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) 
     let names: Vec<usize> = (0..header.names.len()).filter(|&column| holds_names(&header.names[column])).collect();
     text.rows(how.may_miss, |line, record| {
         for &column in &names {
-            let (first, now) = (header.first.get(column).map(String::as_str), record.get(column));
+            let (first, now) = (header.first.get(column).map(String::as_str), record.get(column).map(str::trim));
             if first != now {
                 return Err(Failure::wrong(format!(
                     "{name}:{line}: column {} (`{}`) is `{}`, `{}` before: the order of the joints changes, expected the \
@@ -223,6 +224,7 @@ struct Cells {
 impl Cells {
     /// The number of a cell; a date if it is the time. `place` names the cell in messages.
     fn number(&self, place: impl std::fmt::Display, cell: &str, is_time: bool) -> Result<f64> {
+        let cell = cell.trim();
         if let Ok(x) = cell.parse::<f64>() {
             if x.is_finite() || self.may_miss {
                 return Ok(x);
