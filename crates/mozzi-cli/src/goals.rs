@@ -2,9 +2,9 @@
 //! qz of the orientation, in {s}.
 
 use crate::angles::question;
-use crate::csv::{self, csv_failure};
 use crate::failure::{Failure, Result};
 use crate::numbers::{angles, array, number, wrong_number};
+use crate::text_table::TextTable;
 use clap::Args;
 use mozzi::{SE3, SO3, Vec3};
 use mozzi_motion::Goal;
@@ -54,7 +54,8 @@ impl GoalArguments {
 
 /// Poses and the line of each in the file.
 pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
-    let (mut reader, header) = csv::open(file)?;
+    let mut text = TextTable::open(file)?;
+    let header = text.header.names.clone();
     let mut places = [0; 7];
     for (place, name) in places.iter_mut().zip(COLUMNS) {
         *place = header.iter().position(|cell| cell == name).ok_or_else(|| {
@@ -69,15 +70,14 @@ pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
         )));
     }
     let mut poses = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| csv_failure(file, &error))?;
-        let line = record.position().map_or(0, |position| position.line());
+    text.rows(false, |line, record| {
         let mut pose = [0.0; 7];
         for ((entry, name), place) in pose.iter_mut().zip(COLUMNS).zip(places) {
             *entry = number(format!("{file}:{line}: column {} (`{name}`)", place + 1), &record[place])?;
         }
         poses.push((line, from_pose(&format!("{file}:{line}: qw qx qy qz"), pose)?));
-    }
+        Ok(())
+    })?;
     if poses.is_empty() {
         return Err(Failure::wrong(format!("{file} has no rows below its header")));
     }

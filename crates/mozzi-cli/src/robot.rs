@@ -210,6 +210,11 @@ fn gravity(text: &str) -> Result<[f64; 3]> {
 }
 
 impl FileArguments {
+    /// Whether warnings are errors.
+    pub fn is_strict(&self) -> bool {
+        self.policy.strict
+    }
+
     /// How its file is read.
     pub fn settings(&self) -> Settings {
         self.policy.settings()

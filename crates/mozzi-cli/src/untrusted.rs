@@ -31,6 +31,15 @@ pub fn table(file: &str, model: &Model) -> Result<Samples, String> {
     read::read(file, model).map_err(said)
 }
 
+/// A log as `identify` reads it: the numbers of times, positions and forces.
+///
+/// # Errors
+/// The error with its place.
+pub fn log(file: &str, model: &Model) -> Result<[usize; 3], String> {
+    let log = crate::commands::identify::log(file, model).map_err(said)?;
+    Ok([log.t.len(), log.theta.len(), log.tau.len()])
+}
+
 /// The quantity's inputs at each state of a table, as `compute --in` reads them.
 ///
 /// # Errors

@@ -220,7 +220,10 @@ fn wrong_tables() {
     with(&table("b.csv", "theta_1,theta_2\n0,inf\n"), &["b.csv:2: column 2 (`theta_2`)", "finite"]);
     with(&table("c.csv", "theta_1,theta_2\n0,0\n0\n"), &["c.csv:3: 1 column, expected 2"]);
     with(&table("d.csv", "theta_1\n0\n"), &["d.csv:1: column theta_2 is missing"]);
-    with(&table("e.csv", "theta_1,theta_2,speed\n0,0,0\n"), &["e.csv:1: column 3 is called `speed`", "dtheta_1"]);
+    with(
+        &table("e.csv", "theta_1,theta_2,dthetta_1\n0,0,0\n"),
+        &["e.csv:1: column 3 is called `dthetta_1`", "dtheta_1"],
+    );
     with(&table("f.csv", "theta_1,theta_2,theta_joint2\n0,0,0\n"), &["f.csv:1", "columns 2 and 3"]);
     with(&table("g.csv", "theta_1,theta_2\n"), &["g.csv has no rows"]);
     with(&table("h.csv", "t\n0\n"), &["h.csv has no columns theta_1 …"]);

@@ -75,3 +75,24 @@ fn a_benchmark_has_the_quantities_of_the_robot() {
     let (code, why) = complaint(&[&["bench", "ur5", "--quantity", "constraint-jacobian"], &size[..]].concat());
     assert!(code != 0 && why.contains("ur5 has no constraints; --constraints FILE adds some"), "{why}");
 }
+
+#[test]
+fn inverse_kinematics_and_identification_refuse_loops() {
+    let folder = folder("constraints-refused");
+    let robot = "<mujoco model=\"m\"><worldbody><body name=\"a\"><joint name=\"j1\" axis=\"0 1 0\"/>\
+                 <geom type=\"capsule\" fromto=\"0 0 0 0 0 -0.5\" size=\"0.04\" mass=\"1\"/>\
+                 <body name=\"b\" pos=\"0 0 -0.5\"><joint name=\"j2\" axis=\"0 1 0\"/>\
+                 <geom type=\"capsule\" fromto=\"0 0 0 0 0 -0.5\" size=\"0.04\" mass=\"1\"/>\
+                 <site name=\"s\" pos=\"0 0 -0.5\"/></body></body></worldbody>\
+                 <equality><connect body1=\"b\" anchor=\"0 0 -0.5\"/></equality></mujoco>";
+    let robot = file(&folder, "pinned.xml", robot);
+    let refused = |arguments: &[&str]| {
+        let (code, why) = complaint(arguments);
+        assert!(code == 1 && why.contains("with 3 constraint rows") && why.contains("without constraints"), "{why}");
+    };
+    refused(&["ik", &robot, "--end-effector", "s", "--position", "0.3,0,-0.3"]);
+    refused(&["excite", &robot, "--duration", "2", "--max-velocity", "1", "--max-acceleration", "1"]);
+    let rows: String = (0..30).map(|k| format!("{k},0.{k},0.1,1,2\n")).collect();
+    let log = file(&folder, "log.csv", &format!("t,theta_1,theta_2,tau_1,tau_2\n{rows}"));
+    refused(&["identify", &robot, &log]);
+}

@@ -58,9 +58,9 @@ fn swapped_joints_and_other_names_are_noticed() {
         .replace("tau_1", "effort_a")
         .replace("tau_2", "effort_b");
     std::fs::write(&file, format!("{renamed}\n{rest}")).expect("a file");
-    let output = mozzi(&["identify", "double_pendulum", &file, "--fit", "70"]);
-    let messages = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success() && messages.contains("assigned by their order"), "{renamed}: {messages}");
+    let (_, why) = complaint(&["identify", "double_pendulum", &file, "--fit", "70"]);
+    assert!(why.contains("if this is the robot's order: --order a,b"), "{renamed}: {why}");
+    text(&["identify", "double_pendulum", &file, "--fit", "70", "--order", "a,b"]);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn bad_input_is_refused() {
     assert!(why.contains("2 usable rows") || why.contains("1 usable rows"), "{why}");
     let file = common::file(&folder, "names.csv", "t,q1,tau1\n0,0,0\n");
     let (_, why) = complaint(&["identify", "double_pendulum", &file]);
-    assert!(why.contains("no position of `2`") || why.contains("expected"), "{why}");
+    assert!(why.contains("column theta_2 is missing") && why.contains("--lock joint2=POSITION"), "{why}");
     let (_, why) = complaint(&["identify", "double_pendulum", &file, "--out", "robot.txt"]);
     assert!(why.contains("expected a name that ends in .urdf, .json, .xml (MJCF)"), "{why}");
     let (_, why) = complaint(&["identify", "double_pendulum", &file, "--fit", "55"]);

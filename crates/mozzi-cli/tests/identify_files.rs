@@ -212,7 +212,7 @@ fn a_floating_robot_is_identified_from_a_file() {
     let rows = std::fs::read_to_string(&log).expect("rows");
     let cut = file(&folder, "cut.csv", &rows.replace("wrench_tip_f_z", "other_f_z"));
     let (_, why) = complaint(&["identify", "double_pendulum", "--floating", &cut]);
-    assert!(why.contains("column wrench_tip_f_z is missing; the log has 5 of the 6"), "{why}");
+    assert!(why.contains("column wrench_tip_f_z is missing; the file has 5 of the 6"), "{why}");
     let toe = file(&folder, "toe.csv", &rows.replace("wrench_tip", "wrench_toe"));
     let (_, why) = complaint(&["identify", "double_pendulum", "--floating", &toe]);
     assert!(why.contains("`wrench_toe`"), "{why}");

@@ -18,6 +18,7 @@ mod gpu;
 mod ground;
 mod identify;
 mod identify_files;
+mod identify_logs;
 mod ik;
 mod inputs_and_outputs;
 mod interrupt;

@@ -1,5 +1,7 @@
 //! What can be wrong with a log or with the options.
 
+use crate::{Finding, Level};
+
 /// Why nothing was identified.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -58,6 +60,12 @@ pub enum Error {
         /// What uses up rows.
         why: String,
     },
+    /// The log contradicts itself or the robot.
+    #[error("{}; --trust-log fits such a log all the same", .faults.join("; also "))]
+    Fault {
+        /// What, where, and what helps.
+        faults: Vec<String>,
+    },
     /// The motion determines nothing.
     #[error("the motion does not excite the robot: {reason}; move every joint, or use `mozzi excite`")]
     NotExciting {
@@ -86,4 +94,12 @@ pub enum Error {
     /// A simulation of the robot.
     #[error(transparent)]
     Simulation(#[from] mozzi_sim::Error),
+}
+
+impl Error {
+    /// The faults among findings.
+    pub(crate) fn of_faults(findings: &[Finding]) -> Self {
+        let faults = findings.iter().filter(|finding| finding.level == Level::Fault);
+        Error::Fault { faults: faults.map(|finding| format!("{} ({})", finding.text, finding.code)).collect() }
+    }
 }

@@ -9,6 +9,9 @@ pub enum Level {
     Note,
     /// The result may be wrong because of it.
     Warning,
+    /// The log contradicts itself or the robot: the result would be wrong. [`identify`](crate::identify()) refuses such
+    /// a log, unless [`Options::trust_log`](crate::Options::trust_log) is set.
+    Fault,
 }
 
 /// One remark about a log or a fit.
@@ -32,11 +35,20 @@ impl Finding {
     pub fn warning(code: &'static str, text: impl Into<String>) -> Self {
         Finding { code, level: Level::Warning, text: text.into() }
     }
+
+    /// The log contradicts itself or the robot.
+    pub fn fault(code: &'static str, text: impl Into<String>) -> Self {
+        Finding { code, level: Level::Fault, text: text.into() }
+    }
 }
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let level = if self.level == Level::Warning { "warning" } else { "note" };
+        let level = match self.level {
+            Level::Note => "note",
+            Level::Warning => "warning",
+            Level::Fault => "fault",
+        };
         write!(f, "{level}: {} ({})", self.text, self.code)
     }
 }

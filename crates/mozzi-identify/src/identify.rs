@@ -2,9 +2,10 @@
 
 use crate::compress::{Compressed, Evidence, PARTS};
 use crate::estimate::least_squares::Decomposition;
-use crate::setup::{Estimates, Limits, Setup};
+use crate::judgement::suspicion;
+use crate::setup::{Estimates, Limits, Setup, without_constraints};
 use crate::signals::{Filter, Samples, prepare};
-use crate::{Choice, Error, Finding, Kind, Log};
+use crate::{Choice, Error, Finding, Kind, Level, Log};
 use mozzi::Model;
 use nalgebra::DMatrix;
 
@@ -24,12 +25,22 @@ pub struct Options {
     pub limits: Limits,
     /// The first part of each log that is used, in tenths: 10 for all of it. The rest is held out.
     pub tenths: usize,
+    /// Whether to fit a log that contradicts itself or the robot; the contradictions are then warnings.
+    pub trust_log: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
         let (choice, filter) = (Choice::default(), Filter::default());
-        Options { choice, filter, prior: 0.3, robust: false, limits: Limits::default(), tenths: PARTS }
+        Options {
+            choice,
+            filter,
+            prior: 0.3,
+            robust: false,
+            limits: Limits::default(),
+            tenths: PARTS,
+            trust_log: false,
+        }
     }
 }
 
@@ -97,6 +108,7 @@ pub fn identify<'m>(
         let found = options.tenths.to_string();
         return Err(Error::BadOption { option: "the part to fit", found, expected: "1 to 10 tenths".into() });
     }
+    without_constraints(model)?;
     if options.choice.gains && logs.iter().all(|log| log.payload.is_none()) {
         return Err(Error::BadOption {
             option: "the number of logs with a known payload",
@@ -108,9 +120,19 @@ pub fn identify<'m>(
     let (mut samples, mut findings) = (Vec::new(), Vec::new());
     for log in logs {
         let filter = Filter { friction: options.choice.shape(), ..options.filter };
-        let (of_log, more) = prepare(model, log, &filter)?;
+        let (of_log, mut more) = prepare(model, log, &filter)?;
+        if !options.choice.gains {
+            more.extend(suspicion::mistakes(model, &log.name, &of_log)?);
+        }
         samples.push(of_log);
         findings.extend(more);
+    }
+    match options.trust_log {
+        true => demote(&mut findings),
+        false if findings.iter().any(|finding| finding.level == Level::Fault) => {
+            return Err(Error::of_faults(&findings));
+        }
+        false => {}
     }
     let compress = |samples: &Samples| Compressed::new(&setup.columns, &setup.pattern, samples, None);
     let compressed: Vec<Compressed> = samples.iter().map(compress).collect::<Result<_, _>>()?;
@@ -170,7 +192,8 @@ impl<'m> Identification<'m> {
     /// As [`identify`].
     pub fn validate(&self, log: &Log, filter: &Filter) -> Result<(Errors, Samples, Vec<Finding>), Error> {
         let filter = Filter { friction: self.setup.columns.choice.shape(), ..*filter };
-        let (samples, findings) = prepare(self.setup.columns.model, log, &filter)?;
+        let (samples, mut findings) = prepare(self.setup.columns.model, log, &filter)?;
+        demote(&mut findings);
         let P = self.setup.columns.count();
         let compressed = [Compressed::new(&self.setup.columns, &self.setup.pattern, &samples, None)?];
         let other = Evidence::new(&self.setup.pattern, P, &compressed, |_, _| true);
@@ -197,6 +220,11 @@ impl<'m> Identification<'m> {
     pub fn evidence(&self) -> Evidence {
         Evidence::new(&self.setup.pattern, self.setup.columns.count(), &self.logs, |_, part| part < self.tenths)
     }
+}
+
+/// Makes faults warnings.
+fn demote(findings: &mut [Finding]) {
+    findings.iter_mut().for_each(|finding| finding.level = finding.level.min(Level::Warning));
 }
 
 /// Errors on blocks in time, each predicted by fits on the other blocks, pooled.

@@ -10,11 +10,13 @@ mod finding;
 mod identify;
 pub mod judgement;
 mod log;
+mod mend;
 mod payload;
 mod predict;
 mod refine;
 mod setup;
 pub mod signals;
+mod verdict;
 
 pub use choice::{Choice, Sensor};
 pub use columns::{Columns, Equations, Kind, Unknown};
@@ -28,3 +30,4 @@ pub use payload::Carried;
 pub use predict::{identified, parameters, predict};
 pub use refine::{RefineOptions, Refinement, refine};
 pub use setup::{Estimates, Limits, Setup};
+pub use verdict::{Predicted, Verdict, Weighed};

@@ -1,7 +1,7 @@
 //! A recorded motion, and the check of its rows.
 
 use crate::{Error, Finding};
-use mozzi::{FrameId, Model, SpatialInertia};
+use mozzi::{FrameId, Freedom, Model, SpatialInertia};
 
 /// A recorded motion with its torques. Tables are by rows: N rows of nq or n numbers in the model's order.
 #[derive(Clone, Debug, Default)]
@@ -10,6 +10,8 @@ pub struct Log {
     pub name: String,
     /// Times, s, increasing.
     pub t: Vec<f64>,
+    /// Whether the times are known to be in seconds; otherwise ms, µs and ns are recognised.
+    pub is_time_certain: bool,
     /// Positions θ, N × nq: rad or m.
     pub theta: Vec<f64>,
     /// Velocities θ̇, N × n; without them they are differentiated from θ.
@@ -61,6 +63,17 @@ impl Log {
         all
     }
 
+    pub(crate) fn check_lengths(&self, model: &Model) -> Result<(), Error> {
+        let N = self.rows();
+        for (what, table, width) in self.tables(model) {
+            if table.len() != N * width {
+                let expected = format!("{N} rows of {width}");
+                return Err(Error::WrongLength { log: self.name.clone(), what, found: table.len(), expected });
+            }
+        }
+        Ok(())
+    }
+
     /// Checks lengths, times and numbers. Rows with NaN and rows that repeat the row before are left out; a step in
     /// time longer than five median steps ends a run.
     ///
@@ -69,13 +82,8 @@ impl Log {
     /// numbers, [`Error::TooShort`] with fewer than 20 rows.
     pub fn check(&self, model: &Model) -> Result<Rows, Error> {
         let (N, n, log) = (self.rows(), model.n(), || self.name.clone());
+        self.check_lengths(model)?;
         let tables = self.tables(model);
-        for &(what, table, width) in &tables {
-            if table.len() != N * width {
-                let expected = format!("{N} rows of {width}");
-                return Err(Error::WrongLength { log: log(), what, found: table.len(), expected });
-            }
-        }
         let (mut findings, mut usable, mut missing) = (Vec::new(), Vec::new(), None);
         let (mut not_finite, mut repeated) = (0, 0);
         for row in 0..N {
@@ -124,10 +132,16 @@ impl Log {
         }
         let expected = 20;
         if usable.len() < expected {
-            return Err(Error::TooShort { log: log(), found: usable.len(), expected, why: format!("of {N}") });
+            return Err(Error::TooShort {
+                log: log(),
+                found: usable.len(),
+                expected,
+                why: self.few(N, repeated, not_finite),
+            });
         }
         let step = self.median_step(&usable, repeated, &mut findings);
-        let runs = self.runs(&usable, step, &mut findings);
+        let runs = self.runs(&usable, step);
+        self.constants(model, &usable, &mut findings);
         let saturated = self.saturated(model, &usable, &mut findings);
         debug_assert_eq!(saturated.len(), N * n);
         Ok(Rows { runs, step, saturated, findings })
@@ -155,19 +169,60 @@ impl Log {
         median
     }
 
-    fn runs(&self, usable: &[usize], step: f64, findings: &mut Vec<Finding>) -> Vec<Vec<usize>> {
+    /// Why few rows are usable.
+    fn few(&self, rows: usize, repeated: usize, not_finite: usize) -> String {
+        match (repeated, not_finite) {
+            (0, 0) => format!("of {rows}"),
+            (_, 0) => format!("of {rows}; {repeated} repeat the row before: the numbers are constant"),
+            _ => format!("of {rows}; {repeated} repeat the row before, {not_finite} are not finite"),
+        }
+    }
+
+    /// Positions that never change, and forces that do not.
+    fn constants(&self, model: &Model, usable: &[usize], findings: &mut Vec<Finding>) {
+        let (n, nq) = (model.n(), model.nq());
+        let range = |table: &[f64], width: usize, k: usize| {
+            let of = usable.iter().map(|&row| table[row * width + k]);
+            of.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
+        };
+        let names: Vec<&str> = model.velocity_names().collect();
+        for place in model.places().iter().filter(|place| place.freedom == Freedom::One) {
+            let name = names[place.j];
+            let (low, high) = range(&self.theta, nq, place.q);
+            let speed = self.dtheta.as_ref().map_or((0.0, 0.0), |table| range(table, n, place.j));
+            let file = &self.name;
+            if low == high && speed.0 == speed.1 {
+                findings.push(Finding::warning(
+                    "not_moving",
+                    format!("{file}: the position of {name} is {low} in all rows; --lock {name}={low} keeps it there"),
+                ));
+            } else if low == high {
+                findings.push(Finding::fault(
+                    "constant",
+                    format!(
+                        "{file}: the position of {name} is {low} in all rows, but its velocity is between {} and {}: the \
+                         position is constant, its encoder was not read",
+                        speed.0, speed.1
+                    ),
+                ));
+            }
+            let (least, most) = range(&self.tau, n, place.j);
+            if least == most && low < high {
+                findings.push(Finding::fault(
+                    "constant",
+                    format!(
+                        "{file}: the force of {name} is constant, {least} in all rows, while the joint moves: it was not \
+                         measured, or no motor drives it"
+                    ),
+                ));
+            }
+        }
+    }
+
+    fn runs(&self, usable: &[usize], step: f64) -> Vec<Vec<usize>> {
         let mut runs: Vec<Vec<usize>> = vec![Vec::new()];
         for (k, &row) in usable.iter().enumerate() {
             if k > 0 && self.t[row] - self.t[usable[k - 1]] > GAP * step {
-                findings.push(Finding::warning(
-                    "gap",
-                    format!(
-                        "{}: nothing was recorded between t = {} and {} s; the parts are filtered separately",
-                        self.name,
-                        self.t[usable[k - 1]],
-                        self.t[row]
-                    ),
-                ));
                 runs.push(Vec::new());
             }
             if let Some(run) = runs.last_mut() {
@@ -213,5 +268,48 @@ impl Log {
             }
         }
         saturated
+    }
+}
+
+/// A gap up to this many periods of the cut-off is bridged: between its ends a signal within the band of the motion, a
+/// fifth of the cut-off, is a straight line to 1 %.
+const BRIDGED: f64 = 0.2;
+
+impl Rows {
+    /// Joins runs over gaps that are short against the period of the cut-off, Hz; longer gaps are named.
+    pub(crate) fn bridge(&mut self, log: &Log, cutoff: Option<f64>, findings: &mut Vec<Finding>) {
+        let longest = cutoff.map_or(0.0, |cutoff| BRIDGED / cutoff);
+        let (mut joined, mut count, mut most) = (Vec::<Vec<usize>>::new(), 0, 0.0_f64);
+        let mut gaps: Vec<(f64, f64)> = Vec::new();
+        for run in std::mem::take(&mut self.runs) {
+            let ends = joined.last().and_then(|run| run.last()).zip(run.first()).map(|(a, b)| (log.t[*a], log.t[*b]));
+            match (joined.last_mut(), ends) {
+                (Some(last), Some((from, to))) if to - from <= longest => {
+                    (count, most) = (count + 1, most.max(to - from));
+                    last.extend(run);
+                }
+                (_, ends) => {
+                    gaps.extend(ends);
+                    joined.push(run);
+                }
+            }
+        }
+        self.runs = joined;
+        if count > 0 {
+            findings.push(Finding::note(
+                "bridged",
+                format!(
+                    "{}: {count} gaps of up to {:.1} ms are short against the cut-off's period, {:.0} ms, and are bridged",
+                    log.name,
+                    1e3 * most,
+                    1e3 / cutoff.unwrap_or(1.0)
+                ),
+            ));
+        }
+        if let Some((from, to)) = gaps.first() {
+            let more = if gaps.len() > 1 { format!(", and in {} further gaps", gaps.len() - 1) } else { String::new() };
+            let what = format!("{}: nothing was recorded between t = {from} and {to} s{more}", log.name);
+            findings.push(Finding::warning("gap", format!("{what}; the parts are filtered separately")));
+        }
     }
 }

@@ -141,3 +141,15 @@ fn bounds(columns: &Columns<'_>, limits: &Limits) -> Result<Vec<Bound>, Error> {
     }
     Ok(all)
 }
+
+/// Constraint forces Aᵀλ are not in a log, and the equations do not have them.
+pub(crate) fn without_constraints(model: &Model) -> Result<(), Error> {
+    match model.constraint_rows() {
+        0 => Ok(()),
+        rows => Err(Error::BadOption {
+            option: "the robot",
+            found: format!("with {rows} constraint rows, whose forces Aᵀλ are not in a log"),
+            expected: "a robot without constraints; mimic joints are possible".into(),
+        }),
+    }
+}

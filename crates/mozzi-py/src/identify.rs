@@ -16,7 +16,7 @@ use pyo3::types::PyDict;
 fn of_identification(error: Error) -> PyErr {
     match error {
         Error::Model(error) => of_model(error),
-        other => PyValueError::new_err(other.to_string()),
+        other => PyValueError::new_err(other.to_string().replace("--trust-log fits", "trust_log=True fits")),
     }
 }
 
@@ -143,6 +143,7 @@ pub fn _identify<'py>(
         robust: option(options, "robust")?.unwrap_or(false),
         limits: Limits { total_mass: total_mass.map(|(m, d)| [m, d]), ..Limits::default() },
         tenths: tenths.round() as usize,
+        trust_log: option(options, "trust_log")?.unwrap_or(false),
     };
     let stop = || Python::attach(|py| py.check_signals().is_err());
     let work = || -> Result<_, Error> {

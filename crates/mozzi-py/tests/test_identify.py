@@ -42,10 +42,23 @@ def test_a_payload_is_weighed(arm, log):
     assert found.parameters["payload.m"] == pytest.approx(0.4, abs=0.02)
 
 
-def test_swapped_joints_are_noticed(arm, log):
-    swapped = {name: table if name == "t" else table[:, ::-1].copy() for name, table in log.items()}
-    found = mozzi.identify(arm, swapped)
-    assert any("swapped" in finding for finding in found.findings)
+def test_contradictions_are_refused_or_warnings(arm, log):
+    swapped = {**log, **{name: log[name][:, ::-1] for name in ("theta", "dtheta", "tau")}}
+    with pytest.raises(ValueError, match="columns of joint1 and joint2 seem to be swapped"):
+        mozzi.identify(arm, swapped)
+    found = mozzi.identify(arm, swapped, trust_log=True)
+    assert any("seem to be swapped" in text for text in found.findings)
+
+
+def test_the_verdict_is_data(arm, log):
+    found = mozzi.identify(arm, log)
+    assert found.verdict.is_trusted and found.verdict.nrms < 0.05 < found.verdict.of_file
+    assert found.verdict.predicted == "LeftOut" and "predicts unseen torques" in found.verdict.text
+    assert found.verdict.payload is None
+    weighed = mozzi.identify(arm, log, only="payload").verdict.payload
+    assert weighed.mass == pytest.approx(0.4, abs=0.02) and weighed.frame == arm.end_effector
+    milliseconds = mozzi.identify(arm, {**log, "t": 1000 * log["t"]})
+    assert milliseconds.verdict.nrms == pytest.approx(found.verdict.nrms, rel=0.02)
 
 
 def test_wrong_arguments_are_named(arm, log):

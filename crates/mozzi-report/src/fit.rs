@@ -84,7 +84,7 @@ fn errors_table(title: &str, found: &Identification<'_>, errors: &Errors) -> Str
 fn findings<'f>(all: impl Iterator<Item = &'f Finding>) -> String {
     let items: String = all
         .map(|finding| {
-            let class = if finding.level == Level::Warning { " class=\"warning\"" } else { "" };
+            let class = if finding.level != Level::Note { " class=\"warning\"" } else { "" };
             format!("<li{class}>{}</li>\n", escaped(&finding.text))
         })
         .collect();

@@ -1,7 +1,7 @@
 //! The result of an identification as JSON.
 
 use mozzi_identify::judgement::Judgement;
-use mozzi_identify::{Errors, Identification};
+use mozzi_identify::{Errors, Identification, Verdict};
 use serde_json::{Value, json};
 
 /// Parameters, base parameters, errors, residuals and findings, by name.
@@ -47,9 +47,11 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
             })
         })
         .collect();
+    let verdict = Verdict::new(found, validations.iter().map(|(_, errors)| errors));
     let validations: Vec<Value> =
         validations.iter().map(|(file, errors)| json!({ "log": file, "errors": of_errors(errors) })).collect();
     json!({
+        "verdict": of_verdict(&verdict),
         "condition": estimates.least_squares.condition,
         "determined": estimates.least_squares.rank,
         "steps": optimum.steps,
@@ -62,6 +64,17 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
         "validations": validations,
         "residuals": residuals,
         "findings": findings,
+    })
+}
+
+fn of_verdict(verdict: &Verdict) -> Value {
+    let payload = verdict.payload.as_ref().map(|payload| {
+        let [mass, deviation] = payload.mass;
+        json!({ "frame": payload.frame, "mass": mass, "deviation": deviation, "center": payload.center })
+    });
+    json!({
+        "text": verdict.to_string(), "predicted": format!("{:?}", verdict.predicted), "nrms": verdict.nrms,
+        "of_file": verdict.of_file, "is_trusted": verdict.is_trusted, "payload": payload,
     })
 }
 

@@ -1,7 +1,7 @@
 //! The columns of a motion's row.
 
 use crate::columns;
-use crate::places::ENERGIES;
+use crate::recogniser::ENERGIES;
 use mozzi::Model;
 use mozzi_sim::Sample;
 

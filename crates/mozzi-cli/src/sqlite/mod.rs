@@ -88,6 +88,12 @@ impl Database {
         if header[56..60] != [0, 0, 0, 1] {
             return Err("its texts are UTF-16, expected UTF-8".into());
         }
+        if std::fs::metadata(format!("{path}-journal")).is_ok_and(|journal| journal.len() > 0) {
+            return Err(format!(
+                "{path}-journal is there: its last transaction was not finished; `sqlite3 {path} 'PRAGMA user_version'` rolls \
+                 it back"
+            ));
+        }
         if std::fs::metadata(format!("{path}-wal")).is_ok_and(|log| log.len() > 0) {
             return Err(format!(
                 "{path}-wal holds changes that are not in it yet; `sqlite3 {path} 'PRAGMA wal_checkpoint(TRUNCATE)'` \
@@ -120,7 +126,14 @@ impl Database {
             let values = [row.value(0)?, row.value(1)?, row.value(3)?];
             if values[0].text() == Some("table") && values[1].text() == Some(name) {
                 let root = values[2].integer().and_then(|root| u64::try_from(root).ok()).unwrap_or_default();
-                let (columns, key) = columns(row.value(4)?.text().unwrap_or_default());
+                let definition = row.value(4)?.text().unwrap_or_default().to_string();
+                if definition.to_lowercase().split_whitespace().collect::<Vec<_>>().join(" ").contains("without rowid")
+                {
+                    return Err(format!(
+                        "its table `{name}` is WITHOUT ROWID, expected a table with row numbers, as rosbag2 writes"
+                    ));
+                }
+                let (columns, key) = columns(&definition);
                 found = Some(Table { root, columns, key });
             }
             Ok(())
@@ -132,6 +145,8 @@ impl Database {
     pub fn rows(&mut self, table: &Table, mut each: impl FnMut(&mut Row<'_>) -> Fails<()>) -> Fails<()> {
         // pages to read, those of later keys first; each page belongs to one tree
         let (mut open, mut read) = (vec![(table.root, 0)], 0);
+        let whole = self.pages * self.page_size as u64;
+        let mut content: u64 = 0;
         while let Some((number, depth)) = open.pop() {
             read += 1;
             if read > self.pages || depth > DEEPEST {
@@ -167,6 +182,10 @@ impl Database {
                 let length =
                     usize::try_from(length).ok().filter(|&length| length as u64 <= self.pages * self.page_size as u64);
                 let length = length.ok_or_else(damaged)?;
+                content += length as u64;
+                if content > whole {
+                    return Err("it is damaged: its cells overlap, so that its rows are longer than the file".into());
+                }
                 let local = self.local(length);
                 let payload = cell.get(more + further..more + further + local).ok_or_else(damaged)?;
                 let next = if local < length { child(place + more + further + local).ok_or_else(damaged)? } else { 0 };

@@ -5,12 +5,13 @@ use super::format::Format;
 use super::npy::{self, Header};
 use super::npz;
 use super::samples::Samples;
+use super::{How, recognised};
 use crate::columns;
-use crate::csv;
 use crate::failure::{Failure, Result};
 use crate::input::Input;
 use crate::numbers::WRENCH;
-use crate::places::{ENERGIES, GROUPS, Places};
+use crate::recogniser::{self, ENERGIES, GROUPS};
+use crate::text_table;
 use mozzi::Model;
 use std::cell::Cell;
 
@@ -22,7 +23,12 @@ const MOST_POSITIONS: usize = 1_000_000;
 
 /// Reads a file, or CSV from standard input for `-`.
 pub fn read(file: &str, model: &Model) -> Result<Samples> {
-    read_by(file, &|_| model)
+    read_as(file, model, &How::default())
+}
+
+/// Reads a file in another way.
+pub fn read_as(file: &str, model: &Model, how: &How) -> Result<Samples> {
+    read_by(file, &|_| model, how)
 }
 
 /// Reads the columns of a robot or, if there are as many positions as joints, those of the same robot on a fixed base;
@@ -30,17 +36,17 @@ pub fn read(file: &str, model: &Model) -> Result<Samples> {
 pub fn read_joints(file: &str, model: &Model, fixed: &Model) -> Result<(Samples, bool)> {
     let is_of_joints = Cell::new(false);
     let choose = |names: &[String]| {
-        let positions = names.iter().filter(|name| name.starts_with("theta_")).count();
+        let positions = recogniser::positions(names);
         is_of_joints.set(positions == fixed.nq() && !names.iter().any(|name| name.starts_with("theta_base.")));
         if is_of_joints.get() { fixed } else { model }
     };
-    Ok((read_by(file, &choose)?, is_of_joints.get()))
+    Ok((read_by(file, &choose, &How::default())?, is_of_joints.get()))
 }
 
-fn read_by<'m>(file: &str, choose: Choose<'_, 'm>) -> Result<Samples> {
+fn read_by<'m>(file: &str, choose: Choose<'_, 'm>, how: &How) -> Result<Samples> {
     match Format::of_input(file)? {
         Format::Npy => match open_npy(file)? {
-            (header, from) if header.is_structured => structured(file, &header, from, choose),
+            (header, from) if header.is_structured => structured(file, &header, from, choose, how),
             (header, _) => Err(Failure::wrong(format!(
                 "{file} is a plain array {}, expected named columns: a structured array, such as `mozzi simulate` writes, or .npz",
                 tuple(&header.shape)
@@ -48,10 +54,10 @@ fn read_by<'m>(file: &str, choose: Choose<'_, 'm>) -> Result<Samples> {
         },
         Format::Npz => arrays(file, choose),
         #[cfg(feature = "arrow")]
-        Format::Arrow => super::arrow::read(file, choose),
+        Format::Arrow => super::arrow::read(file, choose, how),
         #[cfg(feature = "parquet")]
-        Format::Parquet => super::parquet::read(file, choose),
-        _ => csv::read(file, choose),
+        Format::Parquet => super::parquet::read(file, choose, how),
+        _ => text_table::read(file, choose, how),
     }
 }
 
@@ -67,16 +73,17 @@ pub fn rest(file: &str, header: &Header, mut from: Input) -> Result<Vec<f64>> {
 }
 
 /// The named columns of a structured array.
-pub fn structured<'m>(file: &str, header: &Header, from: Input, choose: Choose<'_, 'm>) -> Result<Samples> {
+pub fn structured<'m>(file: &str, header: &Header, from: Input, choose: Choose<'_, 'm>, how: &How) -> Result<Samples> {
     let &[rows] = header.shape.as_slice() else {
         let shape = tuple(&header.shape);
         return Err(Failure::wrong(format!("{file} has named columns and shape {shape}, expected (N,)")));
     };
     let names: Vec<String> = header.fields.iter().map(|(name, _)| name.clone()).collect();
-    let places = Places::find(file, &names, choose(&names))?;
-    places.used(file)?;
+    let found = recognised(file, &names, choose(&names), how)?;
+    found.used(file)?;
     let values = rest(file, header, from)?;
-    Ok(places.samples(file, rows, |row, column| values[row * names.len() + column]))
+    let samples = found.samples(file, rows, |row, column| values[row * names.len() + column]);
+    Ok(Samples { columns: found.rows, ..samples })
 }
 
 /// The shape of a table at one state.

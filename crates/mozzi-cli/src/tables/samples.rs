@@ -3,6 +3,7 @@
 use crate::columns::names;
 use crate::failure::{Failure, Result};
 use crate::numbers::WRENCH;
+use crate::recogniser::Row;
 use mozzi::Model;
 use std::collections::BTreeMap;
 
@@ -19,6 +20,10 @@ pub struct Samples {
     pub t: Option<Vec<f64>>,
     /// By name, each by rows.
     pub tables: BTreeMap<String, Vec<f64>>,
+    /// Whether the unit of `t` is named, or follows from its size.
+    pub is_time_certain: bool,
+    /// The meaning of each column.
+    pub columns: Vec<Row>,
 }
 
 impl Samples {

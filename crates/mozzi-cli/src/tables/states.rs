@@ -4,8 +4,8 @@ use super::array::tuple;
 use super::format::{Format, TABLE};
 use super::npy::Header;
 use super::precision::Precision;
-use super::read;
 use super::samples::{Samples, columns_of};
+use super::{How, read};
 use crate::failure::{Failure, Result};
 use crate::input::Input;
 use crate::numbers::WRENCH;
@@ -33,7 +33,9 @@ impl<T: Precision> States<T> {
         let needs_wrench = query.declaration().uses == Uses::WRENCHES && applied.is_empty();
         let mut samples = match format {
             Format::Npy => match read::open_npy(file)? {
-                (header, from) if header.is_structured => read::structured(file, &header, from, &|_| model)?,
+                (header, from) if header.is_structured => {
+                    read::structured(file, &header, from, &|_| model, &How::default())?
+                }
                 (header, from) => one_array(file, header, from, query, model, needs_wrench)?,
             },
             _ => read::read(file, model)?,

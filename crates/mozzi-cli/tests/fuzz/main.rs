@@ -115,4 +115,4 @@ macro_rules! fuzz {
     };
 }
 
-fuzz!(json csv npy npz arrow request);
+fuzz!(json csv log bag npy npz arrow request);

@@ -102,6 +102,24 @@ pub fn csv(bytes: &[u8]) {
     table("csv", bytes);
 }
 
+/// A log for identification, as text or as a bag: tables of equal lengths, or a message.
+fn recorded(ending: &str, bytes: &[u8]) {
+    let path = file(ending, bytes);
+    let name = path.name();
+    match untrusted::log(name, &ROBOT) {
+        Ok([t, theta, tau]) => assert!(theta == ROBOT.nq() * t && tau == ROBOT.n() * t, "{t} {theta} {tau}"),
+        Err(error) => assert!(error.contains(name) && is_message(&error), "{error}"),
+    }
+}
+
+pub fn log(bytes: &[u8]) {
+    recorded("csv", bytes);
+}
+
+pub fn bag(bytes: &[u8]) {
+    recorded("db3", bytes);
+}
+
 pub fn npy(bytes: &[u8]) {
     table("npy", bytes);
 }

@@ -11,6 +11,7 @@ pub use objective::Goal;
 
 use crate::columns::Columns;
 use crate::compress::stacked;
+use crate::setup::without_constraints;
 use crate::{Choice, Error};
 use mozzi::random::Random;
 use mozzi::{BaseParameters, Freedom, Model};
@@ -100,6 +101,7 @@ fn state(basis: &Basis, coefficients: &[f64], t: f64) -> [Vec<f64>; 3] {
 /// # Errors
 /// [`Error::BadOption`] for a duration that is not positive, limits of a wrong length, or a start outside its limits.
 pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -> Result<Excitation, Error> {
+    without_constraints(model)?;
     check(model, options)?;
     let columns = Columns::new(model, options.choice.clone())?;
     let (P, n) = (columns.count(), model.n());

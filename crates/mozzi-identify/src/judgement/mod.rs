@@ -1,9 +1,11 @@
 //! How good an identification is: predictions on what was left out first, then parameters.
 
 pub mod excitation;
+mod gains;
 pub mod residuals;
 pub mod sensor;
 pub mod suspicion;
+pub mod velocities;
 
 use crate::{Error, Finding, Identification, Log};
 use excitation::Parameter;
@@ -33,14 +35,11 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
     let names: Vec<&str> = model.velocity_names().collect();
     let (mut residuals, mut predicted, mut findings) = (Vec::new(), Vec::new(), Vec::new());
     for (samples, log) in found.samples.iter().zip(logs) {
-        findings.extend(suspicion::velocities(model, log, &log.check(model)?));
-        if !columns.choice.gains {
-            findings.extend(suspicion::mistakes(model, samples)?);
-        }
         let of_log = crate::predict(columns, &found.estimates.consistent.x, samples)?;
         let all: Vec<Residual> = (0..n).map(|j| Residual::new(names[j], j, n, samples, &of_log)).collect();
         findings.extend(lag(&log.name, &all, 1.0 / samples.rate));
         findings.extend(colour(&log.name, &all));
+        findings.extend(unexplained(&log.name, &all));
         residuals.push(all);
         predicted.push(of_log);
     }
@@ -112,6 +111,28 @@ fn colour(log: &str, residuals: &[Residual]) -> Option<Finding> {
                  standard deviations are too small, by up to {:.0} times",
                 names.join(", "),
                 ((1.0 + most) / (1.0 - most)).sqrt()
+            ),
+        )
+    })
+}
+
+/// Joints whose residual stays above half their force.
+fn unexplained(log: &str, residuals: &[Residual]) -> Option<Finding> {
+    const SHARE: f64 = 0.5;
+    let most = residuals.iter().map(|r| r.force).fold(0.0, f64::max);
+    let bad: Vec<String> = residuals
+        .iter()
+        .filter(|r| r.rmse > SHARE * r.force && r.force > 1e-3 * most)
+        .map(|r| format!("{} ({:.0} %)", r.name, 100.0 * r.rmse / r.force))
+        .collect();
+    (!bad.is_empty()).then(|| {
+        Finding::warning(
+            "unexplained",
+            format!(
+                "{log}: most of the force is not explained at {}: friction with memory or that depends on load, a joint \
+                 that hardly moves, joints that share a motor or a gear (a coupled wrist), a wrong axis in the robot's \
+                 file, or a column of another joint",
+                bad.join(", ")
             ),
         )
     })

@@ -1,13 +1,17 @@
 //! From a log to evenly spaced positions, velocities, accelerations and forces, all filtered alike.
 
 pub mod butterworth;
+mod quaternions;
 pub mod smoothing_spline;
 pub mod spectrum;
 
+use crate::judgement::velocities;
 use crate::log::Rows;
-use crate::{Error, Finding, Log};
+use crate::mend::mend;
+use crate::{Error, Finding, Level, Log};
 use butterworth::LowPass;
 use mozzi::{FrameId, Freedom, Model, SpatialInertia};
+use quaternions::{continuous, normalize};
 use smoothing_spline::SmoothingSpline;
 use spectrum::Spectrum;
 
@@ -129,8 +133,13 @@ impl Samples {
 /// # Errors
 /// As [`Log::check`], and [`Error::TooShort`] if no run is long enough for the filter.
 pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Vec<Finding>), Error> {
-    let rows = log.check(model)?;
-    let mut findings = rows.findings.clone();
+    let (log, mut findings) = mend(model, log)?;
+    let log = log.as_ref();
+    if findings.iter().any(|finding| finding.level == Level::Fault && finding.code.contains("clock")) {
+        return Err(Error::of_faults(&findings)); // no signal can be filtered without its times
+    }
+    let mut rows = log.check(model)?;
+    findings.extend(rows.findings.clone());
     let rate = 1.0 / rows.step;
     if !rate.is_finite() {
         let found = format!("{:e} s", rows.step);
@@ -152,6 +161,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
         }
     };
     let low_pass = cutoff.map(|f| LowPass::new(filter.order, f, rate)).transpose()?;
+    rows.bridge(log, cutoff, &mut findings);
     // what the ends of a filtered run are worth: two periods of the cut-off
     let two_periods = cutoff.map_or(0.0, |f| (2.0 * rate / f).ceil());
     let trim = two_periods as usize;
@@ -165,6 +175,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
         let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter };
         part.append(trim, &mut samples);
     }
+    findings.extend(velocities::check(model, log, &rows, low_pass.as_ref(), trim));
     if samples.count() < 20 {
         let count = if two_periods < 1e9 { format!("{trim}") } else { format!("{two_periods:.1e}") };
         let why = format!("two periods of the cut-off, {count} rows, are left out at both ends of each run");
@@ -203,7 +214,7 @@ fn automatic(model: &Model, log: &Log, rows: &Rows) -> f64 {
 }
 
 /// Linear interpolation at even times.
-fn resampled(t: &[f64], x: &[f64], step: f64) -> Vec<f64> {
+pub(crate) fn resampled(t: &[f64], x: &[f64], step: f64) -> Vec<f64> {
     let count = ((t[t.len() - 1] - t[0]) / step + 1e-6) as usize + 1;
     let mut k = 0;
     (0..count)
@@ -243,7 +254,9 @@ impl Part<'_> {
 
         let mut theta = columns(&self.log.theta, nq);
         continuous(self.model, &mut theta);
-        let positions = theta.clone();
+        // memory: raw positions are kept only if they are differentiated
+        let is_spline = self.filter.acceleration == Acceleration::Spline;
+        let positions = if is_spline || self.log.dtheta.is_none() { theta.clone() } else { Vec::new() };
         theta.iter_mut().for_each(|x| self.smooth(&times, x));
         normalize(self.model, &mut theta);
         let differentiate = |x: &[f64]| derivative(x, step);
@@ -271,14 +284,17 @@ impl Part<'_> {
             (None, Acceleration::Spline, Some(cutoff)) => self.by_spline(&times, &dtheta, &positions, cutoff),
             _ => dtheta.iter().map(|x| differentiate(x)).collect(),
         };
-        let raw_tau = columns(&self.log.tau, n);
-        let mut tau = raw_tau.clone();
-        tau.iter_mut().for_each(|x| self.smooth(&times, x));
+        let kept = trim..N.saturating_sub(trim);
+        let mut tau = columns(&self.log.tau, n);
+        for (x, removed) in tau.iter_mut().zip(&mut samples.removed) {
+            let raw = x.clone();
+            self.smooth(&times, x);
+            *removed += kept.clone().map(|k| (raw[k] - x[k]).powi(2)).sum::<f64>();
+        }
         let mut wrenches: Vec<Vec<Vec<f64>>> = self.log.wrenches.iter().map(|(_, table)| columns(table, 6)).collect();
         wrenches.iter_mut().flatten().for_each(|x| self.smooth(&times, x));
 
-        let kept = trim..N - trim;
-        for k in kept.clone() {
+        for k in kept {
             samples.t.push(times[k]);
             let push = |to: &mut Vec<f64>, from: &[Vec<f64>]| to.extend(from.iter().map(|x| x[k]));
             push(&mut samples.theta, &theta);
@@ -295,9 +311,6 @@ impl Part<'_> {
             }
             let nearest = self.nearest(&t, times[k]);
             samples.is_valid.extend((0..n).map(|j| !self.rows.saturated[nearest * n + j]));
-        }
-        for j in 0..n {
-            samples.removed[j] += kept.clone().map(|k| (raw_tau[j][k] - tau[j][k]).powi(2)).sum::<f64>();
         }
     }
 
@@ -355,30 +368,6 @@ impl Part<'_> {
             }
         }
         found
-    }
-}
-
-/// Makes quaternions continuous in time: q and −q are the same orientation.
-fn continuous(model: &Model, theta: &mut [Vec<f64>]) {
-    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
-        let q = place.q;
-        for k in 1..theta[q].len() {
-            let dot: f64 = (q..q + 4).map(|i| theta[i][k] * theta[i][k - 1]).sum();
-            if dot < 0.0 {
-                (q..q + 4).for_each(|i| theta[i][k] = -theta[i][k]);
-            }
-        }
-    }
-}
-
-/// Gives filtered quaternions the length 1 again.
-fn normalize(model: &Model, theta: &mut [Vec<f64>]) {
-    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
-        let q = place.q;
-        for k in 0..theta[q].len() {
-            let length = (q..q + 4).map(|i| theta[i][k].powi(2)).sum::<f64>().sqrt();
-            (q..q + 4).for_each(|i| theta[i][k] /= length);
-        }
     }
 }
 

@@ -19,7 +19,7 @@ pub use secondary::Secondary;
 pub use step::Method;
 
 use crate::Error;
-use crate::error::check;
+use crate::error::{check, check_open};
 use bounds::Within;
 use mozzi::kinematics::{body_jacobian, forward_kinematics};
 use mozzi::model::Bounds;
@@ -124,7 +124,8 @@ impl<'m> InverseKinematics<'m> {
     /// Positions that reach the goal, from a guess and, if that fails, from random ones. An iteration costs O(n).
     ///
     /// # Errors
-    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for an invalid guess or goal.
+    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for an invalid guess or goal, or
+    /// a robot with constraints.
     pub fn solve(&mut self, goal: Goal, guess: &[f64]) -> Result<Solution, Error> {
         self.solve_with(goal, guess, &Secondary::None)
     }
@@ -135,6 +136,8 @@ impl<'m> InverseKinematics<'m> {
     /// # Errors
     /// As [`solve`](Self::solve).
     pub fn solve_with(&mut self, goal: Goal, guess: &[f64], secondary: &Secondary) -> Result<Solution, Error> {
+        // φ = 0 is not among the equations
+        check_open(self.model, "a robot under inverse kinematics")?;
         let mut theta = guess.to_vec();
         let Found { is_reached, residual, starts, iterations } = self.search(goal, secondary, &mut theta)?;
         if is_reached {

@@ -5,7 +5,7 @@ Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What t
 
 from . import _quantities, controllers, conventions, models, modern_robotics, trajectories
 from ._compare import Comparison, compare
-from ._identify import Excitation, Forces, Identification, excite, identify
+from ._identify import Excitation, Forces, Identification, Verdict, Weighed, excite, identify
 from ._mozzi import (
     DivergedError,
     DynamicsWarning,
@@ -72,6 +72,8 @@ __all__ = [
     "State",
     "Trajectories",
     "Trajectory",
+    "Verdict",
+    "Weighed",
     "__version__",
     "compare",
     "controllers",

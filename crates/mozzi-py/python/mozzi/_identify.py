@@ -25,6 +25,36 @@ class Forces(NamedTuple):
     """Shape (N, n)."""
 
 
+class Weighed(NamedTuple):
+    """A payload that was weighed."""
+
+    frame: str
+    """The frame that carries it."""
+    mass: float
+    """kg."""
+    deviation: float
+    """Standard deviation of the mass, kg."""
+    center: tuple[float, float, float]
+    """Centre of mass in the frame's coordinates, m."""
+
+
+class Verdict(NamedTuple):
+    """How well forces are predicted, as ``mozzi identify`` prints first."""
+
+    text: str
+    """One sentence."""
+    predicted: Literal["OtherLog", "HeldOut", "LeftOut", "Fitted"]
+    """Which samples were predicted."""
+    nrms: float
+    """Root mean square over the joints of error over force."""
+    of_file: float
+    """That of the robot's file."""
+    is_trusted: bool
+    """False if the error is above half of the forces."""
+    payload: Weighed | None
+    """The payload, for ``only="payload"``."""
+
+
 class Identification:
     """The result of ``mozzi.identify``.
 
@@ -32,8 +62,10 @@ class Identification:
     ----------
     model : Model
         The identified robot: links that can exist, friction, armature.
+    verdict : Verdict
+        How well forces are predicted, and whether the result can be trusted.
     report : dict
-        As ``mozzi identify --json``: "parameters", "base_parameters", "fitted", "left_out", "held_out", "validations", "residuals",
+        As ``mozzi identify --json``: "verdict", "parameters", "base_parameters", "fitted", "left_out", "held_out", "validations", "residuals",
         "findings", "condition".
     forces : list of Forces
         Measured and predicted forces of each log.
@@ -44,6 +76,15 @@ class Identification:
         self.model = model
         self.forces = forces
         self._html = html
+
+    @property
+    def verdict(self) -> Verdict:
+        """How well forces are predicted, and whether the result can be trusted."""
+        found = dict(self.report["verdict"])
+        payload = found.pop("payload")
+        if payload is not None:
+            payload = Weighed(**{**payload, "center": tuple(payload["center"])})
+        return Verdict(**found, payload=payload)
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -124,6 +165,7 @@ def identify(
     offsets: bool = True,
     total_mass: tuple[float, float] | None = None,
     lock: Mapping[str, float] | None = None,
+    trust_log: bool = False,
     validate: _Logs = (),
 ) -> Identification:
     """Identify masses, inertias, friction and armature from logs of the robot's motion.
@@ -162,6 +204,9 @@ def identify(
         The mass of all moving links, kg, and its standard deviation.
     lock : mapping, optional
         Joints that the logs do not contain, with their positions.
+    trust_log : bool
+        Fit a log that contradicts itself or the robot: signs, units, swapped joints, velocities of another motion. The
+        contradictions are then warnings among ``findings``.
     validate : mapping or sequence of mappings
         Other logs, whose forces are predicted.
 
@@ -172,7 +217,7 @@ def identify(
     Raises
     ------
     ValueError
-        A log is too short or does not excite the robot, or an option is wrong.
+        A log is too short, contradicts itself or the robot, or does not excite the robot, or an option is wrong.
     """
     options = {
         "torque": torque,
@@ -189,6 +234,7 @@ def identify(
         "offsets": offsets,
         "total_mass": total_mass,
         "lock": list(lock.items()) if lock else None,
+        "trust_log": trust_log,
     }
     report, html, found, forces = _identify(model, _listed(logs), _listed(validate), options)
     return Identification(json.loads(report), html, found, [Forces(*one) for one in forces])

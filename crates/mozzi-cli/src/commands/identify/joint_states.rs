@@ -1,9 +1,13 @@
 //! `sensor_msgs/msg/JointState` messages as a table: of an MCAP file, of a SQLite file of rosbag2, or of a rosbag2
 //! folder.
 
+use super::topics;
 use crate::failure::{Failure, Result};
 use crate::input::cannot;
+use crate::recogniser::Request;
 use crate::sqlite::Database;
+use crate::tables::samples::Samples;
+use mozzi::Model;
 #[cfg(feature = "mcap")]
 use mozzi_urdf::files;
 use std::collections::BTreeMap;
@@ -11,9 +15,6 @@ use std::path::Path;
 
 /// The type's names in ROS 2 and ROS 1.
 const TYPES: [&str; 2] = ["sensor_msgs/msg/JointState", "sensor_msgs/JointState"];
-
-/// More joints are refused.
-const MOST_JOINTS: usize = 1000;
 
 /// Whether messages are read from this file or folder.
 pub fn is_bag(file: &str) -> bool {
@@ -31,14 +32,19 @@ impl Topics {
         let state = state(bytes, received).ok_or_else(|| {
             Failure::wrong(format!("{file}: a message of {topic} is damaged, expected a JointState in CDR"))
         })?;
+        if let Some(name) = state.names.iter().enumerate().find(|(k, name)| state.names[..*k].contains(name)) {
+            return Err(Failure::wrong(format!(
+                "{file}: a message of {topic} names the joint `{}` twice, expected different names",
+                name.1
+            )));
+        }
         self.0.entry(topic.to_string()).or_default().push(state);
         Ok(())
     }
 }
 
-/// The names of columns, and rows of numbers; joints that a message lacks are NaN. Of several topics, the one with most
-/// messages is read.
-pub fn read(file: &str) -> Result<(Vec<String>, Vec<f64>)> {
+/// The robot's motion in a bag; joints that a message lacks are NaN.
+pub fn read(file: &str, model: &Model, request: &Request) -> Result<Samples> {
     let mut topics = Topics::default();
     for part in parts(file)? {
         match part.to_lowercase() {
@@ -50,16 +56,11 @@ pub fn read(file: &str) -> Result<(Vec<String>, Vec<f64>)> {
             }
         }
     }
-    let Some((_, states)) = topics.0.into_iter().max_by_key(|(_, states)| states.len()) else {
+    if topics.0.is_empty() {
         return Err(Failure::wrong(format!("{file} has no messages of {}", TYPES[0])));
-    };
-    let joints: std::collections::BTreeSet<&str> =
-        states.iter().flat_map(|state| &state.names).map(String::as_str).collect();
-    if joints.len() > MOST_JOINTS {
-        let found = joints.len();
-        return Err(Failure::wrong(format!("{file} names {found} joints, expected at most {MOST_JOINTS}")));
     }
-    Ok(table(&states))
+    let states = topics::choose(file, topics.0, model, request)?;
+    topics::table(file, states, model, request)
 }
 
 /// The files of a bag, in the order in which they were written: `bag_2.db3` precedes `bag_10.db3`.
@@ -174,46 +175,15 @@ fn of_sqlite(file: &str, topics: &mut Topics) -> Result<()> {
     }
 }
 
-fn table(states: &[State]) -> (Vec<String>, Vec<f64>) {
-    let mut joints: Vec<String> = Vec::new();
-    for name in states.iter().flat_map(|state| &state.names) {
-        if !joints.contains(name) {
-            joints.push(name.clone());
-        }
-    }
-    let groups = ["theta", "dtheta", "tau"];
-    let is_there: [bool; 3] = core::array::from_fn(|k| states.iter().any(|state| !state.values[k].is_empty()));
-    let mut header = vec!["t".to_string()];
-    for (group, _) in groups.iter().zip(is_there).filter(|(_, there)| *there) {
-        header.extend(joints.iter().map(|joint| format!("{group}_{joint}")));
-    }
-    // publishers that leave the stamp empty have the time at which the message was received
-    let is_stamped = states.iter().any(|state| state.stamp != 0);
-    let time = |state: &State| if is_stamped { state.stamp } else { state.received };
-    let mut states: Vec<&State> = states.iter().collect();
-    states.sort_by_key(|state| state.received);
-    let start = states.first().map_or(0, |state| time(state));
-    let mut rows = Vec::new();
-    for state in states {
-        rows.push((time(state).saturating_sub(start)) as f64 * 1e-9);
-        for k in (0..3).filter(|&k| is_there[k]) {
-            rows.extend(joints.iter().map(|joint| {
-                let at = state.names.iter().position(|name| name == joint);
-                at.and_then(|at| state.values[k].get(at).copied()).unwrap_or(f64::NAN)
-            }));
-        }
-    }
-    (header, rows)
-}
-
-struct State {
+/// One message.
+pub struct State {
     /// The header's time, ns.
-    stamp: i64,
+    pub stamp: i64,
     /// The time at which it was recorded, ns.
-    received: i64,
-    names: Vec<String>,
+    pub received: i64,
+    pub names: Vec<String>,
     /// Positions, velocities, efforts.
-    values: [Vec<f64>; 3],
+    pub values: [Vec<f64>; 3],
 }
 
 /// A JointState in CDR, little-endian: header, names, positions, velocities, efforts.

@@ -1,104 +1,72 @@
 //! A log of any format.
 
-use super::joint_states::is_bag;
-use super::names::{Column, assign, frame_of};
-use crate::csv;
-use crate::failure::{self, Failure, Result};
-use crate::input;
-use crate::tables::format::Format;
-use crate::tables::read;
-use mozzi::Model;
+use super::join::join;
+use super::joint_states::{self, is_bag};
+use crate::failure::{Failure, Result};
+use crate::recogniser::{Force, IS_CURRENT, Request, Row};
+use crate::tables::samples::Samples;
+use crate::tables::{How, read};
+use mozzi::{FrameId, Model};
 use mozzi_identify::Log;
 
-/// Reads a log: CSV with names in the usual ways, other formats with mozzi's names, MCAP and rosbag2 with `JointState`
-/// messages.
-pub fn read_log(file: &str, model: &Model, order: &[String]) -> Result<Log> {
-    if is_bag(file) {
-        return of_messages(file, model, order);
-    }
-    match Format::of_input(file)? {
-        Format::Npy | Format::Npz | Format::Arrow => of_samples(file, model),
-        #[cfg(feature = "parquet")]
-        Format::Parquet => of_samples(file, model),
-        _ => of_csv(file, model, order),
-    }
+/// What the command line says about the logs.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'g> {
+    pub order: &'g [String],
+    pub force: Force,
+    pub topic: Option<&'g str>,
 }
 
-/// Columns with mozzi's names.
-fn of_samples(file: &str, model: &Model) -> Result<Log> {
-    let mut samples = read::read(file, model)?;
-    let (t, theta, tau) =
-        (samples.times()?.to_vec(), samples.need("theta", model)?.to_vec(), samples.need("tau", model)?.to_vec());
+/// The table of a log, as its columns are recognised: of any format, MCAP and rosbag2 with `JointState` messages.
+pub fn read_table(file: &str, model: &Model, given: &Given) -> Result<Samples> {
+    let request = Request { order: given.order, force: given.force, topic: given.topic, has_flags: true };
+    if is_bag(file) {
+        return joint_states::read(file, model, &request);
+    }
+    read::read_as(file, model, &How { request, may_miss: true })
+}
+
+/// Reads a log, and the meaning of its columns.
+pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Row>)> {
+    let mut samples = read_table(file, model, given)?;
+    join(&mut samples, model)?;
+    let Samples { file: name, columns, is_time_certain, .. } = &samples;
+    let (name, columns, is_time_certain) = (name.clone(), columns.clone(), *is_time_certain);
+    let wrong = |what: String| Failure::wrong(format!("{name}: {what}"));
+    let t = samples.t.take().ok_or_else(|| {
+        let names: Vec<&str> = columns.iter().map(|row| row.column.as_str()).take(20).collect();
+        wrong(format!(
+            "no column is the time, expected one called t, time or timestamp; there are {}; rows at an even rate need \
+             one, too",
+            names.join(", ")
+        ))
+    })?;
+    let need = |what: &str, columns: &str| wrong(format!("no {what}, expected columns such as {columns}"));
+    let theta =
+        samples.tables.remove("theta").ok_or_else(|| need("positions", "theta_JOINT, q_1 or position_JOINT"))?;
+    let tau = samples.tables.remove("tau").ok_or_else(|| {
+        let currents: Vec<&str> =
+            columns.iter().filter(|row| row.meaning.contains(IS_CURRENT)).map(|row| row.column.as_str()).collect();
+        match currents.first() {
+            Some(first) => wrong(format!(
+                "the forces are motor currents (`{first}` …, in A), expected torques in N m; `--torque current \
+                 --known-payload N:FRAME=m,cx,cy,cz` estimates the drive gains, or multiply each current by its motor's \
+                 torque constant and gear ratio"
+            )),
+            None => need("forces", "tau_JOINT, effort_JOINT or torque_1"),
+        }
+    })?;
     let (dtheta, ddtheta) = (samples.tables.remove("dtheta"), samples.tables.remove("ddtheta"));
     let wrenches = samples.tables.into_iter().filter(|(name, _)| name == "wrench" || name.starts_with("wrench_"));
-    let wrenches = wrenches.map(|(name, table)| Ok((frame_of(file, &name, model)?, table))).collect::<Result<_>>()?;
-    Ok(Log { name: file.to_string(), t, theta, dtheta, ddtheta, tau, wrenches, ..Log::default() })
+    let wrenches = wrenches.map(|(table, rows)| Ok((frame_of(&name, &table, model)?, rows))).collect::<Result<_>>()?;
+    Ok((Log { name, t, theta, dtheta, ddtheta, tau, wrenches, is_time_certain, ..Log::default() }, columns))
 }
 
-/// Rows of numbers with names; empty cells are NaN.
-fn of_csv(file: &str, model: &Model, order: &[String]) -> Result<Log> {
-    let name = input::name(file);
-    let (mut reader, header) = csv::open(file)?;
-    let mut rows: Vec<f64> = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| csv::csv_failure(name, &error))?;
-        let line = record.position().map_or(0, |position| position.line());
-        for (k, cell) in record.iter().enumerate() {
-            let value = match cell.trim() {
-                "" => f64::NAN,
-                text => text.parse().or_else(|_| {
-                    // text in a column that is not used is no error
-                    match used(&header[k]) {
-                        true => Err(Failure::wrong(format!(
-                            "{name}:{line}: column {} (`{}`) is `{text}`, expected a number",
-                            k + 1,
-                            header[k]
-                        ))),
-                        false => Ok(f64::NAN),
-                    }
-                })?,
-            };
-            rows.push(value);
-        }
-    }
-    table(name, &header, &rows, model, order)
-}
-
-/// Whether a column may matter.
-fn used(name: &str) -> bool {
-    !["mode", "state", "method", "frame", "status", "label"].iter().any(|word| name.to_lowercase().contains(word))
-}
-
-/// A log from rows and the names of their columns.
-fn table(name: &str, header: &[String], rows: &[f64], model: &Model, order: &[String]) -> Result<Log> {
-    let found = assign(name, header, model, order)?;
-    found.notes.iter().for_each(|note| failure::note(note));
-    let rows = rows.chunks_exact(header.len().max(1));
-    let gather = |columns: &[Column]| -> Vec<f64> {
-        rows.clone().flat_map(|row| columns.iter().map(move |(column, factor)| row[*column] * factor)).collect()
+/// The frame of a table `wrench` or `wrench_FRAME`.
+fn frame_of(file: &str, table: &str, model: &Model) -> Result<FrameId> {
+    let frame = match table.strip_prefix("wrench_") {
+        Some(frame) => model.frame(frame),
+        None => model.end_effector(),
     };
-    let tau = rows.clone().flat_map(|row| {
-        found.tau.iter().map(move |column| column.map_or(0.0, |(column, factor)| row[column] * factor))
-    });
-    let first = rows.clone().next().map_or(0.0, |row| row[found.t.0]);
-    Ok(Log {
-        name: name.to_string(),
-        // from the first row: nanoseconds since 1970 lose digits otherwise
-        t: rows.clone().map(|row| (row[found.t.0] - first) * found.t.1).collect(),
-        theta: gather(&found.theta),
-        dtheta: found.dtheta.as_deref().map(gather),
-        ddtheta: found.ddtheta.as_deref().map(gather),
-        tau: tau.collect(),
-        wrenches: found
-            .wrenches
-            .iter()
-            .map(|(frame, columns)| (*frame, gather(&columns.map(|column| (column, 1.0)))))
-            .collect(),
-        ..Log::default()
-    })
-}
-
-fn of_messages(file: &str, model: &Model, order: &[String]) -> Result<Log> {
-    let (header, rows) = super::joint_states::read(file)?;
-    table(file, &header, &rows, model, order)
+    frame.map_err(|error| Failure::wrong(format!("{file}: `{table}`: {error}")))
 }

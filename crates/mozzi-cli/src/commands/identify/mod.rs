@@ -1,31 +1,36 @@
 //! `mozzi identify`: the robot's parameters from logs of its motion.
 
+mod join;
 mod joint_states;
 mod log_file;
-mod names;
 mod output;
 mod page;
+mod topics;
 
 use crate::columns::save;
 use crate::edits;
 use crate::failure::{self, Failure, Result};
 use crate::numbers::{array, number};
+use crate::progress::Waiting;
+use crate::recogniser::{Force, Row};
 use crate::robot::FileArguments;
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
-use log_file::read_log;
+use log_file::{Given, read_log, read_table};
 use mozzi::Model;
 use mozzi_identify::judgement::judge;
 use mozzi_identify::signals::{Acceleration, Cutoff, Filter};
-use mozzi_identify::{Choice, Limits, Log, Options, RefineOptions, Sensor, describe, identify, refine};
+use mozzi_identify::{
+    Choice, Finding, Level, Limits, Log, Options, RefineOptions, Sensor, Verdict, describe, identify, refine,
+};
 use output::Out;
 
 #[derive(Args, Debug)]
 pub struct IdentifyArguments {
     #[command(flatten)]
     robot: FileArguments,
-    /// Logs: .csv with columns t, theta_JOINT, dtheta_JOINT, tau_JOINT (q1, qd1, effort_JOINT, … are understood, too),
-    /// .npz, .npy, .arrow; JointState messages of .mcap, .db3 or a folder of rosbag2
+    /// Logs: text with a header of names such as theta_JOINT, q1, /joint_states/JOINT/effort (see --columns), .npz,
+    /// .npy, .arrow, .parquet; JointState messages of .mcap, .db3 or a folder of rosbag2
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<String>,
     /// Write the identified robot: .urdf, .xml (MJCF), .xacro or .yaml (properties), each by editing the robot's own
@@ -93,12 +98,21 @@ pub struct IdentifyArguments {
     /// A box in the link's frame that contains its centre of mass, m
     #[arg(long, value_name = "LINK=x,y,z,X,Y,Z", allow_hyphen_values = true)]
     center_in: Vec<String>,
-    /// Lock a joint that the log does not move, at this position, rad or m
+    /// Lock a joint that the log does not move, at this position, rad or m; `*` matches any text: 'gripper_*=0'
     #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
     lock: Vec<String>,
     /// The log's names of joints, in the robot's order
     #[arg(long, value_name = "NAME,NAME,…", value_delimiter = ',')]
     order: Vec<String>,
+    /// The topic of a bag, or the beginning of the columns' path
+    #[arg(long, value_name = "NAME")]
+    topic: Option<String>,
+    /// Print what each column of the logs is taken for, and nothing else
+    #[arg(long)]
+    columns: bool,
+    /// Fit a log that contradicts itself or the robot's file; the contradictions are then warnings
+    #[arg(long)]
+    trust_log: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -131,15 +145,23 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
-    let locks = edits::locks(&arguments.lock, &whole)?;
+    let lock = arguments.lock_list(&whole)?;
+    let locks = edits::locks(&lock, &whole)?;
     let model = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks)? };
+    let given = arguments.given();
+    if arguments.columns {
+        return arguments.column_tables(&model, &given);
+    }
     let options = arguments.options(&model)?;
-    let mut logs = Vec::new();
+    let (mut logs, mut columns) = (Vec::new(), Vec::new());
     for file in &arguments.logs {
-        logs.push(read_log(file, &model, &arguments.order)?);
+        let (log, rows) = read_log(file, &model, &given)?;
+        columns.push((log.name.clone(), rows));
+        logs.push(log);
     }
     arguments.known_payloads(&model, &mut logs)?;
     interrupt::listen();
+    let progress = Waiting::on("identifying");
     let mut found = identify(&model, &logs, &options, &interrupt::asked)?;
     if arguments.refine {
         let refined = refine(&found, &RefineOptions::default(), &interrupt::asked)?;
@@ -147,17 +169,20 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
         found.replace(refined.x)?;
     }
     let mut judged = judge(&found, &logs)?;
+    drop(progress);
     let mut validations = Vec::new();
     for file in &arguments.validate {
-        let log = read_log(file, &model, &arguments.order)?;
+        let (log, _) = read_log(file, &model, &given)?;
         let (errors, _, findings) = found.validate(&log, &options.filter)?;
         judged.findings.extend(findings);
         validations.push((file.clone(), errors));
     }
     let (robot, more) = describe(&found.setup.columns, &found.estimates.consistent.x, whole.description())?;
     judged.findings.extend(more);
-    let findings: Vec<_> = found.findings.iter().chain(&judged.findings).collect();
+    let findings: Vec<&Finding> = found.findings.iter().chain(&judged.findings).collect();
     findings.iter().for_each(|finding| failure::write(&format!("{finding}\n")));
+    let verdict = Verdict::new(&found, validations.iter().map(|(_, errors)| errors));
+    let has_warnings = findings.iter().any(|finding| finding.level != Level::Note);
     let written = match &out {
         Some(out) => out.write(&robot, arguments.old_values, settings())?,
         None => Vec::new(),
@@ -167,12 +192,63 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     }
     let text = match arguments.robot.json {
         true => json::print(&json::of_robot(&model, mozzi_report::fit_json(&found, &judged, &validations))),
-        false => page::text(&found, &judged, &validations, &written),
+        false => page::text(&verdict, &found, &judged, &validations, &columns, &written),
     };
-    if found.estimates.consistent.is_stopped { Err(Failure::Stopped(text)) } else { Ok(text) }
+    match found.estimates.consistent.is_stopped {
+        true => Err(Failure::Stopped(text)),
+        false if !verdict.is_trusted || arguments.robot.is_strict() && has_warnings => Err(Failure::Answered(text)),
+        false => Ok(text),
+    }
+}
+
+/// A log, without what the command line says about it.
+pub fn log(file: &str, model: &Model) -> Result<Log> {
+    let given = Given { order: &[], force: Force::Torque, topic: None };
+    Ok(read_log(file, model, &given)?.0)
 }
 
 impl IdentifyArguments {
+    fn given(&self) -> Given<'_> {
+        let force = if self.torque == Torque::Current { Force::Current } else { Force::Torque };
+        Given { order: &self.order, force, topic: self.topic.as_deref() }
+    }
+
+    /// The locks with each pattern replaced by the joints that it matches.
+    fn lock_list(&self, robot: &Model) -> Result<Vec<String>> {
+        let mut all = Vec::new();
+        for text in &self.lock {
+            let (pattern, position) = edits::split("--lock", text, "JOINT=POSITION")?;
+            if !pattern.contains('*') {
+                all.push(text.clone());
+                continue;
+            }
+            let joints: Vec<&str> = robot.joint_names().filter(|name| matches(pattern, name)).collect();
+            if joints.is_empty() {
+                let names: Vec<&str> = robot.joint_names().collect();
+                return Err(Failure::wrong(format!(
+                    "--lock {text}: no joint matches `{pattern}`; the robot has {}",
+                    names.join(", ")
+                )));
+            }
+            failure::note(&format!("--lock {text}: {} are locked", joints.join(", ")));
+            all.extend(joints.iter().map(|joint| format!("{joint}={position}")));
+        }
+        Ok(all)
+    }
+
+    /// What each column of each log is taken for.
+    fn column_tables(&self, model: &Model, given: &Given) -> Result<String> {
+        let mut tables: Vec<(String, Vec<Row>)> = Vec::new();
+        for file in &self.logs {
+            let samples = read_table(file, model, given)?;
+            tables.push((samples.file.clone(), samples.columns));
+        }
+        Ok(match self.robot.json {
+            true => json::print(&json::of_robot(model, page::columns_json(&tables))),
+            false => page::columns(&tables),
+        })
+    }
+
     fn options(&self, model: &Model) -> Result<Options> {
         let sensor = if self.torque == Torque::Motor { Sensor::Motor } else { Sensor::Link };
         let frame = || match &self.payload {
@@ -209,6 +285,7 @@ impl IdentifyArguments {
             robust: self.robust,
             limits: self.limits()?,
             tenths: (percent / 10.0) as usize,
+            trust_log: self.trust_log,
         })
     }
 
@@ -255,5 +332,38 @@ impl IdentifyArguments {
             log.payload = Some((model.frame(frame)?, edits::payload(&place, list)?));
         }
         Ok(())
+    }
+}
+
+/// Whether a text matches a pattern, in which `*` stands for any text.
+fn matches(pattern: &str, text: &str) -> bool {
+    let Some((first, rest)) = pattern.split_once('*') else { return pattern == text };
+    let Some(mut left) = text.strip_prefix(first) else { return false };
+    let mut parts: Vec<&str> = rest.split('*').collect();
+    let last = parts.pop().unwrap_or_default();
+    for part in parts {
+        let Some(k) = left.find(part) else { return false };
+        left = &left[k + part.len()..];
+    }
+    left.ends_with(last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn a_star_matches_any_text() {
+        for (pattern, text, expected) in [
+            ("gripper_*", "gripper_left_joint", true),
+            ("*_wheel_*", "front_wheel_joint", true),
+            ("*", "a", true),
+            ("arm_*_joint", "arm_1_joint", true),
+            ("arm_*_joint", "arm_1_link", false),
+            ("a*a", "a", false),
+            ("head", "head_1", false),
+        ] {
+            assert_eq!(matches(pattern, text), expected, "{pattern} {text}");
+        }
     }
 }

@@ -1,18 +1,31 @@
 //! The result as text.
 
+use crate::recogniser::Row;
 use crate::text::{Page, table};
 use mozzi::Model;
 use mozzi_identify::judgement::Judgement;
-use mozzi_identify::{Errors, Identification, Kind, Refinement};
+use mozzi_identify::{Errors, Identification, Kind, Level, Refinement, Verdict};
+use serde_json::{Value, json};
 
 pub fn text(
+    verdict: &Verdict,
     found: &Identification<'_>,
     judged: &Judgement,
     validations: &[(String, Errors)],
+    logs: &[(String, Vec<Row>)],
     written: &[String],
 ) -> String {
     let model = found.setup.columns.model;
     let mut page = Page::default();
+    verdict.to_string().lines().for_each(|line| {
+        page.line(line);
+    });
+    let warnings = found.findings.iter().chain(&judged.findings).filter(|one| one.level != Level::Note);
+    let mut codes: Vec<&str> = warnings.map(|one| one.code).collect();
+    codes.dedup();
+    if !codes.is_empty() {
+        page.line(format!("with warnings: {}", codes.join(", ")));
+    }
     let rows: usize = found.samples.iter().map(|samples| samples.count()).sum();
     page.line(format!(
         "{}: {} unknowns, {} of {} base parameters determined, from {rows} samples",
@@ -36,6 +49,7 @@ pub fn text(
     }
     page.line("Differences below 3 % mean nothing on one trajectory.");
     parameters(&mut page, found);
+    logs.iter().for_each(|(file, rows)| column_table(&mut page, file, rows));
     weak(&mut page, judged);
     if !written.is_empty() {
         page.blank().line(format!("{} {} written", written.join(", "), if written.len() == 1 { "is" } else { "are" }));
@@ -83,6 +97,28 @@ fn parameters(page: &mut Page, found: &Identification<'_>) {
         }
     }
     page.title("parameters; links: their masses").lines(&table(&rows, "lrrrr"));
+}
+
+/// What each column is taken for.
+fn column_table(page: &mut Page, file: &str, rows: &[Row]) {
+    let head = ["column", "meaning", "unit", "joint"].map(str::to_string).to_vec();
+    let row = |row: &Row| vec![row.column.clone(), row.meaning.clone(), row.unit.clone(), row.joint.clone()];
+    let all: Vec<Vec<String>> = [head].into_iter().chain(rows.iter().map(row)).collect();
+    page.title(&format!("columns of {file}")).lines(&table(&all, "llll"));
+}
+
+/// The tables of columns alone.
+pub fn columns(logs: &[(String, Vec<Row>)]) -> String {
+    let mut page = Page::default();
+    logs.iter().for_each(|(file, rows)| column_table(&mut page, file, rows));
+    page.end()
+}
+
+pub fn columns_json(logs: &[(String, Vec<Row>)]) -> Value {
+    let row = |row: &Row| json!({ "column": row.column, "meaning": row.meaning, "unit": row.unit, "joint": row.joint });
+    let of =
+        |(file, rows): &(String, Vec<Row>)| json!({ "log": file, "columns": rows.iter().map(row).collect::<Vec<_>>() });
+    json!({ "logs": logs.iter().map(of).collect::<Vec<_>>() })
 }
 
 /// What the motion does not determine.

@@ -6,10 +6,11 @@ mod column;
 use super::bound::caught;
 use super::precision::Precision;
 use super::samples::Samples;
+use super::{How, recognised};
 use crate::failure::{Failure, Result};
 use crate::input::cannot;
 use crate::output::Output;
-use crate::places::Places;
+use crate::recogniser::Recognised;
 use arrow_array::{Array, RecordBatch};
 use arrow_ipc::reader::FileReader;
 use arrow_ipc::writer::FileWriter;
@@ -20,7 +21,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// The robot is chosen by the columns' names.
-pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model) -> Result<Samples> {
+pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) -> Result<Samples> {
     let damaged = |why: String| cannot(file, &why);
     let mut opened = files::open(Path::new(file)).map_err(|error| cannot(file, &error))?;
     blocks::check(&mut opened).map_err(damaged)?;
@@ -30,9 +31,9 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model) -> Result<S
             FileReader::try_new_buffered(opened, columns).map_err(|error| cannot(file, &error))
         };
         let names: Vec<String> = reader(None)?.schema().fields().iter().map(|field| field.name().clone()).collect();
-        let places = Places::find(file, &names, choose(&names))?;
-        let used = places.used(file)?;
-        columns(file, &names, &places, &used, reader(Some(used.clone()))?)
+        let found = recognised(file, &names, choose(&names), how)?;
+        let used = found.used(file)?;
+        columns(file, &names, &found, &used, reader(Some(used.clone()))?)
     })
 }
 
@@ -40,7 +41,7 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model) -> Result<S
 pub fn columns(
     file: &str,
     names: &[String],
-    places: &Places,
+    found: &Recognised,
     used: &[usize],
     batches: impl Iterator<Item = std::result::Result<RecordBatch, ArrowError>>,
 ) -> Result<Samples> {
@@ -55,7 +56,8 @@ pub fn columns(
         }
         rows += batch.num_rows();
     }
-    Ok(places.samples(file, rows, |row, column| columns[column][row]))
+    let samples = found.samples(file, rows, |row, column| columns[column][row]);
+    Ok(Samples { columns: found.rows.clone(), ..samples })
 }
 
 fn at(row: Option<usize>, before: usize, what: &str) -> String {

@@ -1,0 +1,122 @@
+//! What is wrong with the columns of a table, and what helps.
+
+use super::{MEANINGS, Search};
+use crate::failure::{Failure, Result};
+use crate::recogniser::{Column, GROUPS, Role, columns, endings, own_names};
+
+impl Search<'_> {
+    pub(super) fn twice(&self, first: usize, second: usize, what: &str) -> Failure {
+        let (a, b) = (self.name(first), self.name(second));
+        let names = if a == b { String::new() } else { format!(", `{a}` and `{b}`,") };
+        self.wrong(&format!("columns {} and {}{names} both give {what}", first + 1, second + 1))
+    }
+
+    /// The error of names that are not the robot's, with what to paste.
+    pub(super) fn foreign(&self, group: usize, foreign: &[&str], found: &[Option<Column>]) -> Failure {
+        let own = columns::entries(self.model, GROUPS[group]);
+        let missing: Vec<&str> = (0..own.len()).filter(|&k| found[k].is_none()).map(|k| own[k]).collect();
+        let some = |names: &[&str]| {
+            let more = if names.len() > 12 { ", …" } else { "" };
+            names.iter().take(12).copied().collect::<Vec<_>>().join(", ") + more
+        };
+        let mut text = format!(
+            "no {} of `{}`; the log's joints are {}, the robot's {}",
+            MEANINGS[group],
+            missing.first().copied().unwrap_or_default(),
+            some(foreign),
+            some(&own)
+        );
+        if !self.request.has_flags {
+            text += "; rename the columns";
+        } else if foreign.len() == own.len() && missing.len() == own.len() {
+            text += &format!("; if this is the robot's order: --order {}", foreign.join(","));
+        } else {
+            text += &format!("; --order NAME,… gives the log's {} names in the robot's order", own.len());
+        }
+        if self.request.has_flags && missing.len() < own.len() {
+            let locks: Vec<String> = missing.iter().take(4).map(|name| format!("--lock {name}=POSITION")).collect();
+            text += &format!(", {} locks what the log lacks (`*` matches any text)", locks.join(" "));
+        } else if self.request.has_flags {
+            text += &format!(", --lock {}=POSITION locks a joint", missing[0]);
+        }
+        self.wrong(&text)
+    }
+
+    pub(super) fn check_whole(&self, group: usize, found: &[Option<Column>], optional: usize) -> Result<()> {
+        let base = found.iter().take(optional).flatten().count();
+        if found.iter().skip(optional).all(Option::is_some) && (base == 0 || base == optional) {
+            return Ok(());
+        }
+        let first = if base == 0 { optional } else { 0 };
+        let at = (first..found.len()).find(|&k| found[k].is_none()).unwrap_or(0);
+        let name = match self.request.order.is_empty() {
+            true => own_names(self.model, group)[at].clone(),
+            false => format!("{}_{}", GROUPS[group], self.request.order[at]),
+        };
+        let lock = match (self.request.has_flags, self.model.velocity_names().nth(at)) {
+            (true, Some(joint)) if optional == 0 => {
+                format!("; --lock {joint}=POSITION locks a joint that the log lacks")
+            }
+            _ => String::new(),
+        };
+        Err(self.wrong(&format!(
+            "column {name} is missing; the file has {} of the {} columns of its group{}{lock}",
+            found.iter().flatten().count(),
+            found.len(),
+            self.unread()
+        )))
+    }
+
+    /// The columns whose names say nothing.
+    fn unread(&self) -> String {
+        let names: Vec<&str> = self.unread.iter().take(4).map(|&column| self.name(column)).collect();
+        match names.is_empty() {
+            true => String::new(),
+            false => format!(", and `{}` is not recognised", names.join("`, `")),
+        }
+    }
+
+    /// A name that nearly is one of mozzi's own is an error, not an unused column.
+    pub(super) fn check_spelling(&self, roles: &[Role]) -> Result<()> {
+        for (column, role) in roles.iter().enumerate() {
+            let name = self.name(column);
+            let Some((word, entry)) = name.split_once('_') else { continue };
+            if *role != Role::Unused("unknown name") || word.len() < 4 {
+                continue;
+            }
+            let names = self.model.position_names().chain(self.model.velocity_names());
+            let is_entry = entry.parse::<usize>().is_ok() || names.into_iter().any(|known| known == entry);
+            let near = GROUPS[..4].iter().min_by_key(|group| distance(word, group));
+            let near = near.filter(|group| distance(word, group) <= 1 + usize::from(group.len() > 3));
+            if let (Some(group), true) = (near, is_entry) {
+                return Err(self.wrong(&format!(
+                    "column {} is called `{name}`, expected a known name: did you mean `{group}_{entry}`?",
+                    column + 1
+                )));
+            }
+            if name.starts_with("theta_base.") || name.starts_with("dtheta_base.") {
+                return Err(self.wrong(&format!(
+                    "column {} is called `{name}`, expected {}",
+                    column + 1,
+                    endings(self.model)
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The edit distance of two words.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut corner = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let next = (corner + usize::from(x != *y)).min(row[j] + 1).min(row[j + 1] + 1);
+            corner = std::mem::replace(&mut row[j + 1], next);
+        }
+    }
+    row[b.len()]
+}

@@ -1,0 +1,49 @@
+use super::super::{Header, Recognised, Request};
+use super::*;
+
+fn find(header: &str, order: &[&str]) -> std::result::Result<Recognised, String> {
+    let model = mozzi_urdf::open("double_pendulum").expect("embedded").description.build().expect("sound");
+    let header = Header::of(header.split(',').map(str::to_string).collect());
+    let order: Vec<String> = order.iter().map(|name| (*name).to_string()).collect();
+    let request = Request { order: &order, has_flags: true, ..Request::default() };
+    Recognised::find("log", &header, &model, &request).map_err(|failure| format!("{failure:?}"))
+}
+
+fn of(found: &Recognised, group: usize) -> Vec<usize> {
+    found.groups[group].iter().flatten().flatten().map(|(column, _)| *column).collect()
+}
+
+#[test]
+fn numbers_begin_where_they_are_complete() {
+    for text in ["t,q0,q1,tau0,tau1", "t,q1,q2,tau1,tau2", "t,q_1,q_2,tau_0,tau_1"] {
+        let found = find(text, &[]).expect(text);
+        assert_eq!((of(&found, THETA), of(&found, TAU)), (vec![1, 2], vec![3, 4]), "{text}");
+    }
+    assert!(find("t,q0,q1,q2,tau0,tau1", &[]).expect_err("three").contains("neither from 0 nor from 1"));
+    assert!(find("t,q1,tau1,tau2", &[]).expect_err("one").contains("theta_2 is missing"));
+}
+
+#[test]
+fn foreign_names_need_an_order() {
+    let text = "t,pos_b,pos_a,effort_a,effort_b";
+    let why = find(text, &[]).expect_err("foreign");
+    assert!(why.contains("--order b,a") && why.contains("--lock joint1=POSITION"), "{why}");
+    let found = find(text, &["a", "b"]).expect("columns");
+    assert_eq!((of(&found, THETA), of(&found, TAU)), (vec![2, 1], vec![3, 4]));
+    assert!(find(text, &["a", "a"]).expect_err("twice").contains("`a` twice"));
+    let found = find("t,pos_arm_joint2,pos_arm_joint1,tau_joint1,tau_joint2", &[]).expect("endings");
+    assert_eq!(of(&found, THETA), vec![2, 1]);
+}
+
+#[test]
+fn one_kind_of_columns_is_preferred_and_two_of_one_kind_are_an_error() {
+    let found = find("t,q1,q2,q_d[1],q_d[2],dq_d1,dq_d2,tau1,tau2,current_1,current_2", &[]).expect("columns");
+    assert_eq!((of(&found, THETA), of(&found, DTHETA), of(&found, TAU)), (vec![1, 2], vec![], vec![7, 8]));
+    assert!(found.notes.iter().any(|note| note.contains("`dq_d1` … are not used")), "{:?}", found.notes);
+    let why = find("t,effort_joint1,theta_1,theta_2,tau_1,tau_2", &[]).expect_err("twice");
+    assert!(why.contains("columns 2 and 5, `effort_joint1` and `tau_1`, both give the force of `joint1`"), "{why}");
+    let why = find("t,theta_1,theta_2,dtheeta_1,tau_1,tau_2", &[]).expect_err("misspelt");
+    assert!(why.contains("did you mean `dtheta_1`?"), "{why}");
+    let why = find("t,q1_nm,q2_nm,tau_1,tau_2", &[]).expect_err("unit");
+    assert!(why.contains("is a position in N m"), "{why}");
+}

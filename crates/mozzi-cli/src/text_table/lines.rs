@@ -1,0 +1,87 @@
+//! The bytes of a text with lines of limited length, and runs of blanks as one separator.
+
+use crate::input::Input;
+use std::io::{self, Read};
+
+/// A longer line is an error; so is a zero byte, which devices may send endlessly.
+const LONGEST: u64 = 64 << 20;
+
+pub struct Lines {
+    input: Input,
+    line: u64,
+    length: u64,
+}
+
+impl Lines {
+    pub fn of(input: Input) -> Self {
+        Lines { input, line: 1, length: 0 }
+    }
+
+    fn wrong(&self, what: &str) -> io::Error {
+        io::Error::other(format!("line {} {what}", self.line))
+    }
+}
+
+impl Read for Lines {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(to)?;
+        for &byte in &to[..count] {
+            self.length += 1;
+            match byte {
+                b'\n' => (self.line, self.length) = (self.line + 1, 0),
+                0 => return Err(self.wrong("holds a zero byte, expected text")),
+                _ if self.length > LONGEST => return Err(self.wrong("is longer than 64 MiB, expected a row")),
+                _ => {}
+            }
+        }
+        Ok(count)
+    }
+}
+
+/// Runs of blanks become one space; those at a line's ends are removed.
+pub struct Blanks<R> {
+    from: R,
+    is_begin: bool,
+    is_pending: bool,
+    buffer: Vec<u8>,
+    at: usize,
+}
+
+impl<R: Read> Blanks<R> {
+    pub fn of(from: R) -> Self {
+        Blanks { from, is_begin: true, is_pending: false, buffer: Vec::new(), at: 0 }
+    }
+}
+
+impl<R: Read> Read for Blanks<R> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        while self.at == self.buffer.len() {
+            let mut raw = [0; 1 << 14];
+            let count = self.from.read(&mut raw)?;
+            if count == 0 {
+                return Ok(0);
+            }
+            (self.at, _) = (0, self.buffer.clear());
+            for &byte in &raw[..count] {
+                match byte {
+                    b' ' | b'\t' | b'\r' => self.is_pending = !self.is_begin,
+                    b'\n' => {
+                        (self.is_begin, self.is_pending) = (true, false);
+                        self.buffer.push(byte);
+                    }
+                    _ => {
+                        if std::mem::take(&mut self.is_pending) {
+                            self.buffer.push(b' ');
+                        }
+                        self.is_begin = false;
+                        self.buffer.push(byte);
+                    }
+                }
+            }
+        }
+        let count = to.len().min(self.buffer.len() - self.at);
+        to[..count].copy_from_slice(&self.buffer[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
+    }
+}

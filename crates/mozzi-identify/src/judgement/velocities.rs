@@ -1,0 +1,213 @@
+//! Compares logged velocities with differentiated positions: signs, units, mixed-up joints, velocities of another
+//! motion, and delays of filters that ran forwards only.
+
+use crate::log::Rows;
+use crate::signals::butterworth::LowPass;
+use crate::signals::{derivative, resampled};
+use crate::{Finding, Log};
+use mozzi::{Freedom, Model};
+
+/// A velocity belongs to its position above this correlation.
+const ALIKE: f64 = 0.9;
+
+/// Relative difference, after the filter, above which the velocity is of another motion; a warning at a third of it.
+const APART: f64 = 0.1;
+
+/// A velocity that comes earlier by more than this, s, is no measured one.
+const EARLY: f64 = 4e-3;
+
+/// Joints slower than this share of the fastest one are not compared.
+const SLOW: f64 = 0.02;
+
+/// The same low-pass filter as before the fit runs over all three signals of each joint.
+struct Signals {
+    /// Derivatives of positions.
+    slopes: Vec<Vec<f64>>,
+    logged: Vec<Vec<f64>>,
+    forces: Vec<Vec<f64>>,
+    step: f64,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The correlation of two signals about their means.
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let centred = |x: &[f64]| -> Vec<f64> {
+        let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
+        x.iter().map(|x| x - mean).collect()
+    };
+    let (a, b) = (centred(a), centred(b));
+    let size = (dot(&a, &a) * dot(&b, &b)).sqrt();
+    if size > 0.0 { dot(&a, &b) / size } else { 0.0 }
+}
+
+impl Signals {
+    fn new(
+        model: &Model,
+        log: &Log,
+        rows: &Rows,
+        dtheta: &[f64],
+        low_pass: Option<&LowPass>,
+        trim: usize,
+    ) -> Option<Self> {
+        let n = model.n();
+        let run = rows.runs.iter().max_by_key(|run| run.len()).filter(|run| run.len() > 2 * trim + 20)?;
+        let t: Vec<f64> = run.iter().map(|&row| log.t[row]).collect();
+        let of = |table: &[f64], j: usize, differentiates: bool| -> Vec<f64> {
+            let mut x = resampled(&t, &run.iter().map(|&row| table[row * n + j]).collect::<Vec<_>>(), rows.step);
+            if let Some(low_pass) = low_pass {
+                low_pass.filter(&mut x);
+            }
+            if differentiates {
+                x = derivative(&x, rows.step);
+            }
+            let ends = trim.max(3);
+            x.get(ends..x.len().saturating_sub(ends)).unwrap_or_default().to_vec()
+        };
+        let all = |table: &[f64], differentiates: bool| (0..n).map(|j| of(table, j, differentiates)).collect();
+        Some(Signals {
+            slopes: all(&log.theta, true),
+            logged: all(dtheta, false),
+            forces: all(&log.tau, false),
+            step: rows.step,
+        })
+    }
+
+    /// δ of θ̇(t − δ) ≈ θ′ − δ θ″, by least squares: along, square.
+    fn lag(&self, j: usize) -> (f64, f64) {
+        let second = derivative(&self.slopes[j], self.step);
+        let rest: Vec<f64> = self.logged[j].iter().zip(&self.slopes[j]).map(|(a, b)| a - b).collect();
+        (-dot(&rest, &second), dot(&second, &second))
+    }
+}
+
+/// Faults and warnings about the velocities of a log.
+pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, trim: usize) -> Vec<Finding> {
+    let (n, Some(dtheta)) = (model.n(), &log.dtheta) else { return Vec::new() };
+    let places = model.configuration_space().places();
+    if places.iter().any(|place| place.freedom != Freedom::One) {
+        return Vec::new();
+    }
+    let Some(signals) = Signals::new(model, log, rows, dtheta, low_pass, trim) else { return Vec::new() };
+    let names: Vec<&str> = model.velocity_names().collect();
+    let size = |x: &[f64]| dot(x, x).sqrt();
+    let fastest = signals.slopes.iter().map(|x| size(x)).fold(0.0, f64::max);
+    let moves = |j: usize| size(&signals.slopes[j]) > SLOW * fastest;
+    let (mut findings, mut lags, mut scales, mut rough) = (Vec::new(), (0.0, 0.0), Vec::new(), Vec::new());
+    for j in (0..n).filter(|&j| moves(j)) {
+        let (slope, logged, name) = (&signals.slopes[j], &signals.logged[j], names[j]);
+        let own = correlation(slope, logged);
+        let factor = dot(slope, logged) / dot(slope, slope);
+        let others = (0..n).filter(|&i| i != j && moves(i)).map(|i| (i, correlation(&signals.slopes[i], logged)));
+        let best = others.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap_or((j, 0.0));
+        let by_force = correlation(slope, &signals.forces[j]);
+        let mut fault = |code, text: String| findings.push(Finding::fault(code, format!("{}: {text}", log.name)));
+        if own < -ALIKE {
+            fault("sign", format!("the velocity of {name} has the opposite sign of its position's derivative"));
+        } else if own.abs() < ALIKE && by_force > ALIKE && by_force > best.1.abs() {
+            fault(
+                "swapped_columns",
+                format!(
+                    "the force of {name} is the derivative of its position (correlation {by_force:.3}), its velocity is \
+                     not ({own:.3}): the columns of velocity and force (torque) seem to be swapped"
+                ),
+            );
+        } else if own.abs() < ALIKE && best.1.abs() > ALIKE {
+            fault(
+                "swapped_joints",
+                format!(
+                    "the velocity of {name} is the derivative of the position of {} (correlation {:.3}), not of its own \
+                     ({own:.3})",
+                    names[best.0], best.1
+                ),
+            );
+        } else if own < ALIKE {
+            fault(
+                "velocity",
+                format!(
+                    "the velocity of {name} is not the derivative of its position (correlation {own:.3}): a desired \
+                     velocity, or that of another motion; leave velocities out, then positions are differentiated"
+                ),
+            );
+        } else if !(0.75..1.33).contains(&factor) {
+            scales.push((name, factor));
+        } else {
+            let rest: Vec<f64> = logged.iter().zip(slope).map(|(a, b)| a - b).collect();
+            let apart = size(&rest) / size(slope);
+            let (along, square) = signals.lag(j);
+            let lag = along / square;
+            lags = (lags.0 + along, lags.1 + square);
+            // a filter delays; only a desired velocity comes before the motion
+            let is_early = lag < -(1.5 * rows.step).max(EARLY) && apart > APART / 10.0;
+            if is_early || apart > APART {
+                let when = match lag < 0.0 {
+                    true => "earlier: a desired velocity instead of the measured one?",
+                    false => "later: filtered, or that of another motion?",
+                };
+                fault(
+                    if lag < 0.0 { "velocity" } else { "causal_filter" },
+                    format!(
+                        "the velocity of {name} differs by {:.1} % from its position's derivative, and comes {:.1} ms \
+                         {when} Leave velocities out, then positions are differentiated",
+                        100.0 * apart,
+                        1e3 * lag.abs()
+                    ),
+                );
+            } else if apart > APART / 3.0 {
+                rough.push(format!("{name} {:.1} %", 100.0 * apart));
+            }
+        }
+    }
+    if !rough.is_empty() {
+        findings.push(Finding::warning(
+            "velocity",
+            format!(
+                "{}: velocities differ from the derivatives of positions, beyond the filter ({}): noise or jitter of the \
+                 clock, or desired velocities instead of measured ones",
+                log.name,
+                rough.join(", ")
+            ),
+        ));
+    }
+    findings.extend(scale(&log.name, &scales));
+    let (along, size) = lags;
+    if size > 0.0 && (along / size).abs() > rows.step.max(2e-3) && findings.is_empty() {
+        let lag = along / size;
+        findings.push(Finding::warning(
+            "causal_filter",
+            format!(
+                "{}: logged velocities come {:.1} ms {} than the derivative of positions: they were filtered causally; \
+                 log them unfiltered, or leave them out",
+                log.name,
+                1e3 * lag.abs(),
+                if lag > 0.0 { "later" } else { "earlier" }
+            ),
+        ));
+    }
+    findings
+}
+
+/// Velocities in another unit than positions.
+fn scale(log: &str, scales: &[(&str, f64)]) -> Option<Finding> {
+    let (_, first) = scales.first()?;
+    let is_near = |x: f64| (0.85..1.18).contains(&(first / x));
+    let unit = match () {
+        () if is_near(57.2958) => ": velocities in deg/s, positions in rad?",
+        () if is_near(1.0 / 57.2958) => ": positions in degrees, velocities in rad/s?",
+        () if is_near(9.5493) => ": velocities in rpm?",
+        () if is_near(1e3) || is_near(1e6) || is_near(1e9) => ": times in ms, µs or ns?",
+        () if is_near(1e-3) => ": velocities per ms, or in mrad/s?",
+        () => ": another unit, or the motor's side of a gear?",
+    };
+    let list: Vec<String> = scales.iter().map(|(name, factor)| format!("{name} {factor:.4}")).collect();
+    Some(Finding::fault(
+        "unit",
+        format!(
+            "{log}: velocities are not the derivatives of positions but a multiple of them ({}){unit} Name the unit in \
+             the header, such as q1_deg",
+            list.join(", ")
+        ),
+    ))
+}

@@ -1,0 +1,47 @@
+//! Mends what a log's driver got wrong in a way that leaves no doubt: the unit and the resolution of its clock,
+//! encoders that drop out, positions that wrap. What is in doubt is a fault.
+
+mod clock;
+mod dropouts;
+mod wrap;
+
+use crate::{Error, Finding, Log};
+use mozzi::{Freedom, Model};
+use std::borrow::Cow;
+
+/// The log as it can be filtered, and what was changed.
+///
+/// # Errors
+/// [`Error::WrongLength`].
+pub fn mend<'l>(model: &Model, log: &'l Log) -> Result<(Cow<'l, Log>, Vec<Finding>), Error> {
+    log.check_lengths(model)?;
+    let mut log = Cow::Borrowed(log);
+    let mut findings = Vec::new();
+    if log.rows() < 20 {
+        return Ok((log, findings)); // too short, which `check` says
+    }
+    clock::unit(model, &mut log, &mut findings);
+    clock::resolution(&mut log, &mut findings);
+    dropouts::remove(model, &mut log, &mut findings);
+    wrap::unwrap(model, &mut log, &mut findings);
+    Ok((log, findings))
+}
+
+/// The joints of one axis: their place in θ and in θ̇, and their name.
+fn axes(model: &Model) -> Vec<(usize, usize, String)> {
+    let names: Vec<&str> = model.velocity_names().collect();
+    let one = model.places().iter().filter(|place| place.freedom == Freedom::One).cloned();
+    one.map(|place| (place.q, place.j, names[place.j].to_string())).collect()
+}
+
+/// The value below which this share of the numbers lies; 0 without numbers.
+fn quantile(mut numbers: Vec<f64>, share: f64) -> f64 {
+    numbers.retain(|x| x.is_finite());
+    numbers.sort_by(f64::total_cmp);
+    numbers.get((numbers.len().saturating_sub(1) as f64 * share) as usize).copied().unwrap_or(0.0)
+}
+
+/// The time of a row, or its number if it has none.
+fn at(log: &Log, row: usize) -> String {
+    format!("t = {:.4} s, row {row} (counted from 0)", log.t[row])
+}
