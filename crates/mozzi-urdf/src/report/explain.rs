@@ -322,7 +322,8 @@ pub fn nearest_code(code: &str) -> Option<&'static str> {
     nearest(&short, codes().chain(mjcf::codes()))
 }
 
-/// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; those of MJCF are [`mjcf::codes`](crate::mjcf::codes).
+/// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; those of MJCF are
+/// [`mjcf::codes`](crate::mjcf::codes).
 pub fn codes() -> impl Iterator<Item = &'static str> {
     let mut codes: Vec<&str> = CODES.iter().map(|&(code, ..)| code).collect();
     codes.sort_unstable();
