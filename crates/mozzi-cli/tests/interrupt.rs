@@ -106,6 +106,33 @@ fn a_benchmark_leaves_the_quantities_so_far() {
     assert_eq!(timed.count(), count(&said, " of 2 quantities"));
 }
 
+/// What a command shows on a terminal of its own until Ctrl-C is typed there; none, said, where that cannot be tried.
+fn typed_on_a_terminal(command: &str, wait: Duration) -> Option<String> {
+    // util-linux's `script`: runs a command on a terminal of its own, and types its standard input there
+    let script = Command::new("script")
+        .args(["--quiet", "--return", "--flush", "--command", command, "/dev/null"])
+        .env("TERM", "xterm")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn();
+    let Ok(mut script) = script else {
+        println!("skipped: there is no `script` here, which makes a terminal");
+        return None;
+    };
+    std::thread::sleep(wait);
+    let mut keys = script.stdin.take().expect("piped");
+    let typed = keys.write_all(b"\x03"); // Ctrl-C
+    let output = script.wait_with_output().expect("it ends");
+    drop(keys);
+    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+    if typed.is_err() || !matches!(output.status.code(), Some(130)) {
+        println!("skipped: another `script`, or done before it was interrupted: {shown:.300}");
+        return None;
+    }
+    Some(shown)
+}
+
 #[test]
 fn progress_is_shown_on_a_terminal() {
     let folder = folder("interrupt_terminal");
@@ -114,26 +141,17 @@ fn progress_is_shown_on_a_terminal() {
         .chain(batch(&input, &out))
         .map(|word| format!("'{word}'"))
         .collect();
-    // util-linux's `script`: runs a command on a terminal of its own, and types its standard input there
-    let script = Command::new("script")
-        .args(["--quiet", "--return", "--flush", "--command", &command.join(" "), "/dev/null"])
-        .env("TERM", "xterm")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn();
-    let Ok(mut script) = script else { return println!("skipped: there is no `script` here, which makes a terminal") };
-    std::thread::sleep(WAIT + WAIT);
-    let mut keys = script.stdin.take().expect("piped");
-    let typed = keys.write_all(b"\x03"); // Ctrl-C
-    let output = script.wait_with_output().expect("it ends");
-    drop(keys);
-    let shown = String::from_utf8_lossy(&output.stdout);
-    if typed.is_err() || !matches!(output.status.code(), Some(130)) {
-        return println!("skipped: another `script`, or done before it was interrupted: {shown:.300}");
-    }
-    let bar =
-        shown.split('\u{1b}').find(|part| part.contains("/100,000 states, ")).unwrap_or_else(|| panic!("{shown}"));
+    // a busy machine may not have drawn a bar yet: then once more, with more time before the key
+    let mut wait = WAIT + WAIT;
+    let (shown, bar) = loop {
+        let Some(shown) = typed_on_a_terminal(&command.join(" "), wait) else { return };
+        let bar = shown.split('\u{1b}').find(|part| part.contains("/100,000 states, ")).map(str::to_string);
+        match bar {
+            Some(bar) => break (shown, bar),
+            None => assert!(wait <= 16 * WAIT, "{shown}"),
+        }
+        wait *= 2;
+    };
     assert!(bar.contains("forward-dynamics-by") && bar.contains("/s, ") && bar.contains(" left"), "{bar}");
     assert!(shown.contains("stopped by Ctrl-C: these are the first"), "{shown}");
 }

@@ -1,7 +1,8 @@
 //! Bags: what `JointState` messages look like, and files of SQLite that are no bags of rosbag2.
 
 use super::motion::ROBOT;
-use super::{Same, Variants, Words, clean, complaint, file, folder};
+use super::{Same, Variants, Words, clean, file, folder};
+use crate::common::complaint;
 
 /// A record of SQLite: its header, then its values.
 fn record(values: &[&[u8]], kinds: &[u64]) -> Vec<u8> {
