@@ -66,8 +66,10 @@ fn exact(name: &str, joints: &[&str], row_unit: Option<Unit>) -> Option<Reading>
             };
             let cut = before.rfind(['/', '.']).map_or(0, |k| k + 1);
             let (path, glued) = before.split_at(cut);
+            // `/joint_states/elbow/state/effort`: the quantity is the last part
+            let (inner, last) = rest.rsplit_once('/').unwrap_or(("", rest));
             let mut meaning = Meaning::default();
-            for (is_path, text) in [(true, path), (false, glued), (rest.contains('/'), rest)] {
+            for (is_path, text) in [(true, path), (false, glued), (true, inner), (false, last)] {
                 meaning.take(text, is_path)?;
             }
             meaning.reading(unit.or(row_unit), Entry::Known(k), path)
