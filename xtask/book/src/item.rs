@@ -3,11 +3,15 @@
 /// The item's lines, without documentation, attributes and the indentation of the first line.
 pub fn item(source: &str, name: &str) -> Result<String, String> {
     let lines: Vec<&str> = source.lines().collect();
-    let starts: Vec<usize> = (0..lines.len()).filter(|&at| declares(lines[at], name)).collect();
+    let indent = |at: usize| lines[at].len() - lines[at].trim_start().len();
+    let mut starts: Vec<usize> = (0..lines.len()).filter(|&at| declares(lines[at], name)).collect();
+    // a kernel before the method of its name
+    let least = starts.iter().map(|&at| indent(at)).min();
+    starts.retain(|&at| Some(indent(at)) == least);
     let &[start] = &starts[..] else {
         return Err(format!("`{name}` is declared {} times, expected once", starts.len()));
     };
-    let indent = lines[start].len() - lines[start].trim_start().len();
+    let indent = indent(start);
     let closes =
         |line: &str| line.len() > indent && line[..indent].trim().is_empty() && line[indent..].starts_with('}');
     let end =
@@ -52,6 +56,8 @@ mod tests {
         assert_eq!(item(SOURCE, "a").as_deref(), Ok("pub fn a<S>() {\n    if x {\n        y;\n    }\n}"));
         assert_eq!(item(SOURCE, "ab").as_deref(), Ok("fn ab() {\n    z;\n}"));
         assert!(item(SOURCE, "renamed").is_err());
+        let method = format!("impl X {{\n    pub fn a() {{}}\n}}\n{SOURCE}");
+        assert_eq!(item(&method, "a").as_deref(), Ok("pub fn a<S>() {\n    if x {\n        y;\n    }\n}"));
     }
 
     #[test]

@@ -1,8 +1,9 @@
-//! Builds only if mozzi, without its default features, needs no `std`: see `xtask/src/no_std.rs`.
+//! Builds only if mozzi and mozzi-sim, without their default features, need no `std`: see `xtask/src/no_std.rs`.
 #![no_std]
 
 use core::alloc::{GlobalAlloc, Layout};
 use mozzi as _;
+use mozzi_sim as _;
 
 /// The library uses `alloc`, so there must be an allocator; nothing is ever run.
 struct NoMemory;
