@@ -48,7 +48,7 @@ fn by_mozzi<'a>(model: &'a Model, robot: Option<&'a Compiled>) -> Run<'a> {
         let options = Options { method, record_every: STEPS, ..Options::new(STEPS as f64 * STEP, STEPS) };
         let motion = match robot {
             Some(robot) => robot.simulate(theta, dtheta, brake, &options),
-            None => mozzi_sim::simulate(&model, theta, dtheta, brake, &options),
+            None => mozzi_sim::simulate(model, theta, dtheta, brake, &options),
         };
         let motion = motion.ok()?;
         theta.copy_from_slice(motion.last().theta);

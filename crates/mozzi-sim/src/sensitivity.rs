@@ -265,7 +265,7 @@ mod tests {
     ) -> DVector<f64> {
         let (mut theta, mut dtheta) = (x.0.to_vec(), x.1.to_vec());
         for tau in tau {
-            (theta, dtheta) = held_step(&model, &theta, &dtheta, tau, options).expect("regular");
+            (theta, dtheta) = held_step(model, &theta, &dtheta, tau, options).expect("regular");
         }
         let mut way = vec![0.0; model.n()];
         difference(model, from.0, &theta, &mut way);

@@ -160,7 +160,7 @@ fn check_kind(file: &str) -> Result<()> {
         bytes if bytes.starts_with(b"\x80\x04\x95") || bytes.starts_with(b"\x80\x05\x95") => {
             wrong("a pickle of Python, which is not read since it may run code; df.to_csv(\"log.csv\") writes CSV")
         }
-        bytes if bytes.starts_with(&[0x1f, 0x8b]) => wrong("compressed by gzip; `gunzip` it first"),
+        [0x1f, 0x8b, ..] => wrong("compressed by gzip; `gunzip` it first"),
         _ => Ok(()),
     }
 }
@@ -225,18 +225,16 @@ impl Cells {
     /// The number of a cell; a date if it is the time. `place` names the cell in messages.
     fn number(&self, place: impl std::fmt::Display, cell: &str, is_time: bool) -> Result<f64> {
         let cell = cell.trim();
-        if let Ok(x) = cell.parse::<f64>() {
-            if x.is_finite() || self.may_miss {
-                return Ok(x);
-            }
+        if let Ok(x) = cell.parse::<f64>()
+            && (x.is_finite() || self.may_miss)
+        {
+            return Ok(x);
         }
         if self.may_miss && is_missing(cell) {
             return Ok(f64::NAN);
         }
-        if is_time {
-            if let Some(t) = clock::seconds(cell) {
-                return Ok(t);
-            }
+        if is_time && let Some(t) = clock::seconds(cell) {
+            return Ok(t);
         }
         match self.has_decimal_commas {
             true => number(place, &cell.replacen(',', ".", 1)),

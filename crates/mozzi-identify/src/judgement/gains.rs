@@ -95,7 +95,7 @@ fn friction([[vv, vs], [_, ss]]: [[f64; 2]; 2], [ve, se]: [f64; 2], ee: f64) -> 
 pub fn is_scale(gains: &[Gain]) -> bool {
     let with_say: Vec<&Gain> = gains.iter().filter(|gain| gain.unexplained < EXPLAINED).collect();
     let is_far = |gain: &&Gain| gain.factor > NEAR_ONE || (0.0..1.0 / NEAR_ONE).contains(&gain.factor);
-    2 * with_say.len() > gains.len() && with_say.iter().all(|gain| is_far(gain))
+    2 * with_say.len() > gains.len() && with_say.iter().all(is_far)
 }
 
 /// What the factors may mean.

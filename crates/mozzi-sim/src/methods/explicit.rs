@@ -239,7 +239,7 @@ mod tests {
     fn end(model: &Model, method: Method, steps: usize) -> Vec<f64> {
         let [theta, dtheta, _] = testing::state(model, 5);
         let options = Options { method, record_every: steps, ..Options::new(0.2, steps) };
-        let motion = simulate(&model, &theta, &dtheta, torque(motors), &options).expect("a motion");
+        let motion = simulate(model, &theta, &dtheta, torque(motors), &options).expect("a motion");
         assert_eq!(motion.len(), 2);
         [motion.last().theta, motion.last().dtheta].concat()
     }

@@ -62,7 +62,7 @@ fn expected(model: &Model, case: &Case, options: &Options, absolute: bool) -> Ex
     let rows: Vec<&[f64]> = case.tau.chunks_exact(n).collect();
     let units: Vec<Vec<f64>> = (0..p).map(|i| (0..p).map(|k| f64::from(u8::from(i == k))).collect()).collect();
     let changes: Vec<Variation<'_>> = units.iter().map(|e| Variation::Parameters(e)).collect();
-    let steps = sensitivities(&model, &case.theta, &case.dtheta, &rows, options, &changes).expect("regular");
+    let steps = sensitivities(model, &case.theta, &case.dtheta, &rows, options, &changes).expect("regular");
     let size = |A: &DMatrix<f64>| if absolute { A.abs() } else { A.clone() };
     let bar = |k: usize| {
         let rows = case.bars.iter().flat_map(|table| table[k * n..][..n].iter().copied());

@@ -42,7 +42,7 @@ fn chain() -> Model {
 fn early_and_late(model: &Model, steps: usize, step: f64) -> [f64; 2] {
     let [theta, dtheta, _] = state(model, 3);
     let options = Options { method: Method::Midpoint, record_every: 10, ..Options::new(steps as f64 * step, steps) };
-    let motion = simulate(&model, &theta, &dtheta, Zero, &options).expect("a motion");
+    let motion = simulate(model, &theta, &dtheta, Zero, &options).expect("a motion");
     let (rows, K) = (motion.len(), motion.largest_kinetic_energy());
     let largest = |rows: core::ops::Range<usize>| rows.map(|k| motion.drift(k).abs()).fold(0.0, f64::max) / K;
     [largest(0..rows / 2), largest(rows / 2..rows)]

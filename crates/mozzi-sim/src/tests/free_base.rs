@@ -73,7 +73,7 @@ fn keeps_order(model: &Model) {
     let end = |method, steps| {
         let friction = crate::Friction::Smooth { slip_speed: 0.5 };
         let options = Options { method, friction, record_every: steps, ..Options::new(0.1, steps) };
-        let end = simulate(&model, &theta, &dtheta, Zero, &options).expect("a motion");
+        let end = simulate(model, &theta, &dtheta, Zero, &options).expect("a motion");
         [end.last().theta, end.last().dtheta].concat()
     };
     let best = end(Method::RungeKutta4, 4000);

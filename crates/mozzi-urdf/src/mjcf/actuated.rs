@@ -97,7 +97,7 @@ fn compensated(model: &Model, parts: &[(String, f64)]) -> Result<Model, Error> {
         let part = parts.iter().find(|(name, _)| *name == link.name).map_or(0.0, |(_, part)| *part);
         link.inertia = SpatialInertia::from_parameters(link.inertia.to_parameters().map(|x| part * x));
     }
-    Ok(robot.build()?.with_gravity(model.gravity().0)?)
+    robot.build()?.with_gravity(model.gravity().0)
 }
 
 /// M at the robot's start, if an actuator asks for it.

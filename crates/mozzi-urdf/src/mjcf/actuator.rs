@@ -63,7 +63,7 @@ pub fn actuation(name_or_path: &str, given: &XacroArguments) -> Result<Actuation
 pub fn actuation_of(folder: Option<&Path>, file_name: &str, text: &[u8], given: &XacroArguments) -> Actuation {
     // the model's reader reports what it finds
     let text = bytes::read(text, &mut Findings::default());
-    if !is_mjcf(&text) {
+    if !is_mjcf(text) {
         return Actuation::default();
     }
     let source = syntax::mended(Source::new(file_name, text), Dialect::Mjcf, &mut Findings::default());

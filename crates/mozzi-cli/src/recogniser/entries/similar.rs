@@ -99,10 +99,10 @@ impl Search<'_> {
             }
         }
         for (_, reading) in readings.iter_mut() {
-            if let Entry::Name(name) = &reading.entry {
-                if let Some(&k) = found.get(&(reading.quantity, name.clone())) {
-                    reading.entry = Entry::Known(k);
-                }
+            if let Entry::Name(name) = &reading.entry
+                && let Some(&k) = found.get(&(reading.quantity, name.clone()))
+            {
+                reading.entry = Entry::Known(k);
             }
         }
         notes.sort();
