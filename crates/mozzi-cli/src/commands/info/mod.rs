@@ -39,7 +39,8 @@ pub fn run(arguments: &InfoArguments) -> Result<String> {
     Ok(if arguments.robot.json { json::print(&object::object(&model, &poses)) } else { page(&model, &poses, most) })
 }
 
-fn total_mass(robot: &Description) -> f64 {
+/// The mass of all links, kg.
+pub fn total_mass(robot: &Description) -> f64 {
     robot.links.iter().map(|link| link.inertia.mass).sum()
 }
 

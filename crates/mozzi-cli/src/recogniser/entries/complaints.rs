@@ -3,6 +3,7 @@
 use super::{MEANINGS, Search};
 use crate::failure::{Failure, Result};
 use crate::recogniser::{Column, GROUPS, Role, columns, endings, own_names};
+use mozzi::spelling::distance;
 
 impl Search<'_> {
     pub(super) fn twice(&self, first: usize, second: usize, what: &str) -> Failure {
@@ -104,19 +105,4 @@ impl Search<'_> {
         }
         Ok(())
     }
-}
-
-/// The edit distance of two words.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut corner = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let next = (corner + usize::from(x != *y)).min(row[j] + 1).min(row[j + 1] + 1);
-            corner = std::mem::replace(&mut row[j + 1], next);
-        }
-    }
-    row[b.len()]
 }
