@@ -106,7 +106,7 @@ fn by_forces(arm: &Model) -> Result<SE3, Box<dyn Error>> {
     });
     let mut theta: Vec<f64> = arm.neutral_configuration();
     theta[7..].copy_from_slice(&POSE);
-    let end = mozzi_sim::simulate(&arm, &theta, &vec![0.0; arm.n()], motors, &Options::new(1.0, 1000))?;
+    let end = mozzi_sim::simulate(arm, &theta, &vec![0.0; arm.n()], motors, &Options::new(1.0, 1000))?;
     let momentum = arm.momentum(end.last().theta, end.last().dtheta, Vec3::zero())?;
     println!("  by forces: momentum at the end {:.0e}, base {:.0e} rad/s", momentum.norm(), end.last().dtheta[0].abs());
     Ok(SE3::from_pose(*end.last().theta.first_chunk().ok_or("a base")?))
