@@ -12,13 +12,14 @@ struct Need {
     one_of: &'static [&'static str],
 }
 
-const NEEDS: [Need; 9] = [
+const NEEDS: [Need; 10] = [
     need("compute", &["out", "precision", "threads", "kernels-only", "gpu"], &["in"]),
     need("ik", &["out"], &["in"]),
     need("identify", &["payload"], &["only payload"]),
     need("trajectory", &["position", "rpy", "quaternion", "deviation"], &["path screw", "path line"]),
     need("trajectory", &["ramp-fraction"], &["profile trapezoidal"]),
-    need("simulate", &["contact", "contact-friction", "restitution"], &["ground", "contacts"]),
+    need("simulate", &["contact", "contact-friction", "restitution", "contact-forces"], &["ground", "contacts"]),
+    need("simulate", &["contact-forces"], &["out"]),
     need("simulate", &["tolerance"], &["method dopri"]),
     need("simulate", &["extrapolate"], &["torque", "follow", "tip-wrench"]),
     need("simulate", &["meshes", "mesh-root", "page-rows", "allow-host"], &["report"]),

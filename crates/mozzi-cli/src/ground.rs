@@ -7,7 +7,7 @@ use crate::robot::RobotArguments;
 use clap::Args;
 use mozzi::{Model, SE3, Vec3};
 use mozzi_sim::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
-use mozzi_urdf::geometry::{FRICTION, Geometry, Shape, contact_points, geometry_with};
+use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, geometry_with};
 use mozzi_urdf::json::{At, Object, Read};
 use std::path::Path;
 
@@ -32,6 +32,10 @@ pub struct GroundArguments {
     /// the ground
     #[arg(long, value_name = "FILE.json")]
     contacts: Option<String>,
+    /// Columns of each contact in the --out table: f_n_NAME and f_t_NAME, the force on its plane along the normal and
+    /// across, N, the mean over the step that ends at the row
+    #[arg(long)]
+    contact_forces: bool,
 }
 
 /// More contact points are announced with their cost.
@@ -62,7 +66,7 @@ impl GroundArguments {
             found.planes.push(Plane::ground());
         }
         if found.points.is_empty() {
-            found.points = self.points(robot, model, &shapes.shapes, (mu, restitution))?;
+            found.points = self.points(robot, model, &shapes, (mu, restitution))?;
         }
         let (count, planes) = (found.points.len(), found.planes.len());
         let number = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
@@ -73,6 +77,11 @@ impl GroundArguments {
         };
         failure::note(&format!("{}: {points}, {planes}{cost}", self.flag()));
         Ok(found)
+    }
+
+    /// Are columns of forces asked for?
+    pub fn writes_forces(&self) -> bool {
+        self.contact_forces
     }
 
     /// The flag of messages.
@@ -92,7 +101,7 @@ impl GroundArguments {
         &self,
         robot: &RobotArguments,
         model: &Model,
-        shapes: &[Shape],
+        shapes: &Geometry,
         (given, restitution): (Option<f64>, f64),
     ) -> Result<Vec<ContactPoint>> {
         let mu = given.unwrap_or(FRICTION);
@@ -103,8 +112,13 @@ impl GroundArguments {
         if !self.contact.is_empty() {
             return self.contact.iter().map(|name| of_frame(name)).collect();
         }
-        let found = contact_points(model, shapes, Path::new(&robot.model), None, (given, restitution));
+        let found = contact_points(model, &shapes.shapes, Path::new(&robot.model), None, (given, restitution));
         found.left_out.iter().for_each(|reason| failure::note(&format!("{}: {reason}", self.flag())));
+        if !shapes.soft.is_empty() {
+            let listed = shapes.soft.iter().map(|(name, count)| format!("{name} ({count} geoms)"));
+            let listed = listed.collect::<Vec<_>>().join(", ");
+            failure::note(&format!("{}: not used, since contacts are rigid: {listed}", self.flag()));
+        }
         if !found.points.is_empty() {
             return Ok(found.points);
         }

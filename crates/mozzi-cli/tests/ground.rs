@@ -57,6 +57,67 @@ fn a_cube_falls_on_the_ground() {
 }
 
 #[test]
+fn tables_have_normal_and_tangential_forces() {
+    // a box on a slope of 0.2 rad holds by friction: m g cos α along the normal, m g sin α across
+    let folder = folder("ground_forces");
+    let cube = file(&folder, "cube.urdf", CUBE);
+    let (sin, cos) = (0.1_f64.sin(), 0.1_f64.cos());
+    let slope = format!(
+        r#"{{"points": [{}], "planes": [{{"pose": [{cos}, 0, {sin}, 0, 0, 0, 0]}}]}}"#,
+        [[1, 1], [1, -1], [-1, 1], [-1, -1]]
+            .map(|[x, y]| format!(
+                r#"{{"frame": "cube", "at": [{}, {}, -0.05], "name": "{x}{y}"}}"#,
+                0.05 * f64::from(x),
+                0.05 * f64::from(y)
+            ))
+            .join(", ")
+    );
+    let slope = file(&folder, "slope.json", &slope);
+    let theta = format!("{cos},0,{sin},0,{},0,{}", 0.05 * (2.0 * sin * cos), 0.05 * (cos * cos - sin * sin));
+    for ending in ["csv", "npz", "npy"] {
+        let out = folder.join(format!("slide.{ending}")).display().to_string();
+        let flags = ["--contacts", &slope, "--contact-forces", "--time", "0.5", "--out", &out];
+        text(&[&["simulate", &cube, "--floating", "--theta", &theta], &flags[..]].concat());
+        // what is written is read again
+        text(&["compute", &cube, "gravity-forces", "--floating", "--in", &out]);
+        if ending == "csv" {
+            let table = std::fs::read_to_string(&out).expect("written");
+            let header: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
+            let last: Vec<f64> = table.lines().last().expect("rows").split(',').map(|x| x.parse().expect(x)).collect();
+            let sum = |force: &str| {
+                let of = header.iter().zip(&last).filter(|(name, _)| name.starts_with(force));
+                of.map(|(_, x)| *x).fold((0, 0.0), |(count, sum), x| (count + 1, sum + x))
+            };
+            let weight = 2.0 * 9.81;
+            let ((normals, f_n), (tangents, f_t)) = (sum("f_n_"), sum("f_t_"));
+            assert_eq!((normals, tangents), (4, 4), "{header:?}");
+            assert!(
+                (f_n - weight * 0.2_f64.cos()).abs() < 1e-6 && (f_t - weight * 0.2_f64.sin()).abs() < 1e-6,
+                "{f_n} {f_t}"
+            );
+        }
+    }
+}
+
+#[test]
+fn attributes_of_soft_contacts_are_named_and_ellipsoids_touch() {
+    let egg = r#"<mujoco><worldbody><geom type="plane" size="1 1 1"/>
+      <body pos="0 0 0.1"><freejoint/><geom type="ellipsoid" size="0.3 0.2 0.1" solref="0.01 1" margin="0.001"/></body>
+      </worldbody></mujoco>"#;
+    let egg = file(&folder("ground_soft"), "egg.xml", egg);
+    let run = common::mozzi(&["simulate", &egg, "--ground", "--time", "0.2", "--json"]);
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(
+        said.contains("--ground: not used, since contacts are rigid: margin (1 geoms), solref (1 geoms)"),
+        "{said}"
+    );
+    assert!(said.contains("--ground: 1 contact point, 1 plane"), "{said}");
+    let found: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let last = rows(&found["theta"]).pop().expect("rows");
+    assert!((last[6] - 0.1).abs() < 1e-12, "{last:?}");
+}
+
+#[test]
 fn a_start_in_the_ground_is_lifted_and_a_deep_one_is_refused() {
     let cube = file(&folder("ground_start"), "cube.urdf", CUBE);
     let start = |z: f64| format!("1,0,0,0,0,0,{z}");

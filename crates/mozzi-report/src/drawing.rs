@@ -76,11 +76,11 @@ impl Drawing {
 
     /// The drawing of a text, such as one from a pipe: without meshes, since it has no folder.
     pub fn of_text(file_name: &str, text: &[u8], meshes: Meshes) -> Self {
-        let Geometry { mut shapes, left_out, planes } = parse(file_name, text);
-        let all = shapes.len();
-        shapes.retain(|shape| !matches!(shape.form, Form::Mesh { .. }));
-        let meshless = all - shapes.len();
-        let mut drawing = Self::new(Geometry { shapes, left_out, planes }, Path::new(file_name), meshes, None);
+        let mut found = parse(file_name, text);
+        let all = found.shapes.len();
+        found.shapes.retain(|shape| !matches!(shape.form, Form::Mesh { .. }));
+        let meshless = all - found.shapes.len();
+        let mut drawing = Self::new(found, Path::new(file_name), meshes, None);
         if meshless > 0 && meshes != Meshes::None {
             drawing
                 .notes

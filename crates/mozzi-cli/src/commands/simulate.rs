@@ -308,7 +308,7 @@ impl SimulateArguments {
         let steps = if step > 0.0 { (end / step).ceil().max(0.0) } else { 0.0 };
         let rows = 1.0 + (steps / self.record_every.max(1) as f64).ceil();
         let kept = if self.robot.json { f64::INFINITY } else { self.page.rows(self.report.is_some()) as f64 };
-        let numbers = log::names(model).len() as f64;
+        let numbers = log::Row::new(model).names().len() as f64;
         let in_memory = rows.min(kept) * numbers * BINARY;
         let is_text =
             self.out.as_deref().is_some_and(|file| log::format(file).is_ok_and(|format| format == Format::Csv));
@@ -336,7 +336,11 @@ impl SimulateArguments {
         let forward_dynamics = robot.as_ref().and_then(Compiled::simulator);
         let simulation = Simulation { options, events, forward_dynamics, contacts };
         let rows = 1 + options.steps.div_ceil(options.record_every);
-        let mut log = self.out.as_deref().map(|file| log::Log::new(file, model, rows)).transpose()?;
+        let columns = || match self.ground.writes_forces() {
+            true => log::Row::new(model).with_forces(&simulation.contacts),
+            false => log::Row::new(model),
+        };
+        let mut log = self.out.as_deref().map(|file| log::Log::new(file, columns(), rows)).transpose()?;
         let kept = if self.robot.json { usize::MAX } else { self.page.rows(self.report.is_some()).max(KEPT) };
         let (mut kept, mut account) = (Thinned::new(model, kept), Account::default());
         interrupt::listen();

@@ -113,11 +113,12 @@ fn drifts(motions: &[(Method, Trajectory)]) -> Vec<String> {
 
 /// One table: a column that names the method, then those of `mozzi simulate`.
 fn csv(model: &Model, motions: &[(Method, Trajectory)]) -> Vec<u8> {
-    let mut text = format!("method,{}\n", log::names(model).join(",")).into_bytes();
+    let columns = log::Row::new(model);
+    let mut text = format!("method,{}\n", columns.names().join(",")).into_bytes();
     for (method, motion) in motions {
         for row in motion.samples() {
             text.extend(format!("{},", method.name()).into_bytes());
-            let _ = log::line(&mut text, &row); // writing to memory cannot fail
+            let _ = log::line(&mut text, &columns, &row); // writing to memory cannot fail
         }
     }
     text

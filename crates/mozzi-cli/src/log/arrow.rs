@@ -1,12 +1,10 @@
 //! Arrow's files and Parquet, in batches of rows.
 
-use super::Rows;
-use super::row::{names, values};
+use super::{Row, Rows};
 use crate::tables::arrow::batch;
 use arrow_array::RecordBatch;
 use arrow_ipc::writer::FileWriter;
 use arrow_schema::ArrowError;
-use mozzi::Model;
 use mozzi_sim::Sample;
 use std::fs::File;
 use std::io::{BufWriter, Error, Result};
@@ -30,28 +28,29 @@ impl Sink for FileWriter<BufWriter<File>> {
     }
 }
 
-pub struct Batches<S> {
+pub struct Batches<'m, S> {
+    row: Row<'m>,
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
     sink: S,
 }
 
 /// The names of the columns, and an empty batch with the columns' types.
-fn empty(model: &Model) -> std::result::Result<(Vec<String>, RecordBatch), ArrowError> {
-    let names = names(model);
+fn empty(row: &Row) -> std::result::Result<(Vec<String>, RecordBatch), ArrowError> {
+    let names = row.names();
     let none = batch::<f64>(names.iter().map(|name| (name.clone(), Vec::new())).collect())?;
     Ok((names, none))
 }
 
-impl Batches<FileWriter<BufWriter<File>>> {
-    pub fn to_arrow(to: File, model: &Model) -> Result<Self> {
-        let (names, none) = empty(model).map_err(Error::other)?;
+impl<'m> Batches<'m, FileWriter<BufWriter<File>>> {
+    pub fn to_arrow(to: File, row: Row<'m>) -> Result<Self> {
+        let (names, none) = empty(&row).map_err(Error::other)?;
         let sink = FileWriter::try_new_buffered(to, &none.schema()).map_err(Error::other)?;
-        Ok(Batches { columns: vec![Vec::new(); names.len()], names, sink })
+        Ok(Batches { row, columns: vec![Vec::new(); names.len()], names, sink })
     }
 }
 
-impl<S: Sink> Batches<S> {
+impl<S: Sink> Batches<'_, S> {
     fn write(&mut self) -> Result<()> {
         let columns = self.columns.iter_mut().map(|column| std::mem::replace(column, Vec::with_capacity(BATCH)));
         let batch = batch(self.names.iter().cloned().zip(columns).collect()).map_err(Error::other)?;
@@ -59,9 +58,9 @@ impl<S: Sink> Batches<S> {
     }
 }
 
-impl<S: Sink> Rows for Batches<S> {
+impl<S: Sink> Rows for Batches<'_, S> {
     fn row(&mut self, row: &Sample) -> Result<()> {
-        self.columns.iter_mut().zip(values(row)).for_each(|(column, x)| column.push(x));
+        self.columns.iter_mut().zip(self.row.values(row)).for_each(|(column, x)| column.push(x));
         if self.columns.first().is_some_and(|column| column.len() == BATCH) { self.write() } else { Ok(()) }
     }
 
@@ -75,7 +74,7 @@ impl<S: Sink> Rows for Batches<S> {
 
 #[cfg(feature = "parquet")]
 mod parquet {
-    use super::{ArrowError, Batches, Error, File, Model, RecordBatch, Result, Sink, empty};
+    use super::{ArrowError, Batches, Error, File, RecordBatch, Result, Row, Sink, empty};
     use parquet::arrow::ArrowWriter;
 
     /// Bytes that are buffered until the end of their row group.
@@ -96,11 +95,11 @@ mod parquet {
         }
     }
 
-    impl Batches<ArrowWriter<File>> {
-        pub fn to_parquet(to: File, model: &Model) -> Result<Self> {
-            let (names, none) = empty(model).map_err(Error::other)?;
+    impl<'m> Batches<'m, ArrowWriter<File>> {
+        pub fn to_parquet(to: File, row: Row<'m>) -> Result<Self> {
+            let (names, none) = empty(&row).map_err(Error::other)?;
             let sink = ArrowWriter::try_new(to, none.schema(), None).map_err(Error::other)?;
-            Ok(Batches { columns: vec![Vec::new(); names.len()], names, sink })
+            Ok(Batches { row, columns: vec![Vec::new(); names.len()], names, sink })
         }
     }
 }

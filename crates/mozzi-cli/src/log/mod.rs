@@ -14,13 +14,12 @@ mod ros;
 mod row;
 
 pub use csv::line;
-pub use row::names;
+pub use row::Row;
 
 use crate::failure::Result;
 use crate::output::{Output, failed};
 use crate::tables::format::{Format, MOTION};
 use crate::terminal;
-use mozzi::Model;
 use mozzi_sim::{Recorder, Sample};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
@@ -41,7 +40,7 @@ pub fn format(file: &str) -> Result<Format> {
 pub struct Log<'m> {
     file: String,
     format: Format,
-    model: &'m Model,
+    columns: Option<Row<'m>>,
     expected: usize,
     rows: Option<Box<dyn Rows + 'm>>,
     error: Option<io::Error>,
@@ -50,29 +49,28 @@ pub struct Log<'m> {
 
 impl<'m> Log<'m> {
     /// `expected` is the number of expected rows; "-" is standard output.
-    pub fn new(file: &str, model: &'m Model, expected: usize) -> Result<Self> {
+    pub fn new(file: &str, columns: Row<'m>, expected: usize) -> Result<Self> {
         let format = format(file)?;
         let output = if file == "-" { None } else { Some(Output::create(file)?) };
-        Ok(Log { file: file.to_string(), format, model, expected, rows: None, error: None, output })
+        Ok(Log { file: file.to_string(), format, columns: Some(columns), expected, rows: None, error: None, output })
     }
 
     fn open(&mut self) -> io::Result<Box<dyn Rows + 'm>> {
-        let model = self.model;
+        let Some(columns) = self.columns.take() else { return Err(io::Error::other("the file is open")) };
         let Some(output) = &self.output else {
-            let visible: Vec<String> = names(model).iter().map(|name| terminal::result(name)).collect();
-            return Ok(Box::new(csv::Csv::new(BufWriter::new(io::stdout().lock()), &visible)?));
+            return Ok(Box::new(csv::Csv::new(BufWriter::new(io::stdout().lock()), columns, terminal::result)?));
         };
         let to = output.handle()?;
         Ok(match self.format {
-            Format::Csv => Box::new(csv::Csv::new(BufWriter::new(to), &names(model))?),
-            Format::Npy => Box::new(npy::Npy::new(to, model, self.expected)?),
-            Format::Npz => Box::new(npz::Npz::new(to, &self.file, model)?),
+            Format::Csv => Box::new(csv::Csv::new(BufWriter::new(to), columns, str::to_string)?),
+            Format::Npy => Box::new(npy::Npy::new(to, columns, self.expected)?),
+            Format::Npz => Box::new(npz::Npz::new(to, &self.file, columns)?),
             #[cfg(feature = "arrow")]
-            Format::Arrow => Box::new(arrow::Batches::to_arrow(to, model)?),
+            Format::Arrow => Box::new(arrow::Batches::to_arrow(to, columns)?),
             #[cfg(feature = "parquet")]
-            Format::Parquet => Box::new(arrow::Batches::to_parquet(to, model)?),
+            Format::Parquet => Box::new(arrow::Batches::to_parquet(to, columns)?),
             #[cfg(feature = "mcap")]
-            Format::Mcap => Box::new(mcap::Mcap::new(to, model)?),
+            Format::Mcap => Box::new(mcap::Mcap::new(to, columns.model)?),
             #[cfg(not(all(feature = "arrow", feature = "parquet", feature = "mcap")))]
             _ => return Err(io::Error::other("this program was built without its format")),
         })

@@ -1,18 +1,18 @@
 //! NumPy's .npz, row by row: arrays by name, (N,) and (N, n). Each array is written to a temporary file next to the
 //! archive until all rows are known.
 
-use super::Rows;
-use super::row::{groups, values};
+use super::row::Group;
+use super::{Row, Rows};
 use crate::tables::npy::plain_header;
 use crate::tables::npz::stored;
-use mozzi::Model;
 use mozzi_sim::Sample;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Result, Seek, SeekFrom, Write, copy};
 use std::path::{Path, PathBuf};
 use zip::ZipWriter;
 
-pub struct Npz {
+pub struct Npz<'m> {
+    columns: Row<'m>,
     to: File,
     parts: Vec<Part>,
     rows: usize,
@@ -33,10 +33,10 @@ impl Drop for Part {
     }
 }
 
-impl Npz {
+impl<'m> Npz<'m> {
     /// Writes to this file, which has this name.
-    pub fn new(to: File, name: &str, model: &Model) -> Result<Self> {
-        let part = |group: super::row::Group| {
+    pub fn new(to: File, name: &str, columns: Row<'m>) -> Result<Self> {
+        let part = |group: Group| {
             let path = Path::new(name).with_extension(format!("npz.{}.{}", std::process::id(), group.name));
             let file = File::options().read(true).write(true).create_new(true).open(&path)?;
             // if the system allows it, the file is unlinked now, and disappears however the program ends
@@ -44,14 +44,15 @@ impl Npz {
             let (columns, is_vector) = (group.columns.len(), group.is_vector);
             Ok(Part { name: group.name, columns, is_vector, path, numbers: BufWriter::new(file) })
         };
-        Ok(Npz { to, parts: groups(model).into_iter().map(part).collect::<Result<_>>()?, rows: 0 })
+        let parts = columns.groups().into_iter().map(part).collect::<Result<_>>()?;
+        Ok(Npz { columns, to, parts, rows: 0 })
     }
 }
 
-impl Rows for Npz {
+impl Rows for Npz<'_> {
     fn row(&mut self, row: &Sample) -> Result<()> {
         self.rows += 1;
-        let mut numbers = values(row);
+        let mut numbers = self.columns.values(row);
         for part in &mut self.parts {
             for x in numbers.by_ref().take(part.columns) {
                 part.numbers.write_all(&x.to_le_bytes())?;
@@ -61,7 +62,7 @@ impl Rows for Npz {
     }
 
     fn finish(self: Box<Self>) -> Result<()> {
-        let Npz { to, parts, rows } = *self;
+        let Npz { to, parts, rows, .. } = *self;
         let mut archive = ZipWriter::new(BufWriter::new(to));
         for mut part in parts {
             archive.start_file(format!("{}.npy", part.name), stored())?;

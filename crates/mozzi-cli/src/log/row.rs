@@ -1,9 +1,22 @@
 //! The columns of a motion's row.
 
 use crate::columns;
-use crate::recogniser::ENERGIES;
-use mozzi::Model;
-use mozzi_sim::Sample;
+use crate::recogniser::{ENERGIES, FORCES};
+use mozzi::{Model, Vec3};
+use mozzi_sim::{Contacts, PlaneMotion, Sample};
+
+/// What the rows of a motion's file contain.
+pub struct Row<'m> {
+    pub model: &'m Model,
+    contacts: Vec<Pair>,
+}
+
+/// A contact point and a plane.
+struct Pair {
+    name: String,
+    /// The normal out of the plane, in {s}.
+    up: Vec3,
+}
 
 /// A part of a row: its name, its columns' names, and whether it is a vector (even with one joint).
 pub struct Group {
@@ -12,23 +25,48 @@ pub struct Group {
     pub is_vector: bool,
 }
 
-/// t, θ, θ̇, θ̈, τ, the energies and works, in the order of [`values`].
-pub fn groups(model: &Model) -> Vec<Group> {
-    let single = |name: &'static str| Group { name, columns: vec![name.to_string()], is_vector: false };
-    let vectors = ["theta", "dtheta", "ddtheta", "tau"];
-    let vectors = vectors.map(|name| Group { name, columns: columns::names(model, name), is_vector: true });
-    [single("t")].into_iter().chain(vectors).chain(ENERGIES.map(single)).collect()
-}
+impl<'m> Row<'m> {
+    /// Without forces of contacts.
+    pub fn new(model: &'m Model) -> Self {
+        Row { model, contacts: Vec::new() }
+    }
 
-/// All columns.
-pub fn names(model: &Model) -> Vec<String> {
-    groups(model).into_iter().flat_map(|group| group.columns).collect()
-}
+    /// With f_n and f_t of each contact. Planes that move by a function of time are those of Rust alone.
+    pub fn with_forces(self, contacts: &Contacts) -> Self {
+        let up = |k: usize| match &contacts.planes[k % contacts.planes.len()].motion {
+            PlaneMotion::Fixed(T) | PlaneMotion::Belt(T, _) => T.R * Vec3([0.0, 0.0, 1.0]),
+            PlaneMotion::Moving(_) => Vec3([0.0, 0.0, 1.0]),
+        };
+        Row { contacts: contacts.names().enumerate().map(|(k, name)| Pair { name, up: up(k) }).collect(), ..self }
+    }
 
-/// The numbers of a row, group after group.
-pub fn values<'a>(row: &'a Sample) -> impl Iterator<Item = f64> + 'a {
-    let energy = &row.energy;
-    let energies = [energy.kinetic, energy.potential, energy.motor_work, energy.friction_loss, energy.applied_work];
-    let vectors = [row.theta, row.dtheta, row.ddtheta, row.tau].into_iter().flatten().copied();
-    std::iter::once(row.t).chain(vectors).chain(energies)
+    /// t, θ, θ̇, θ̈, τ, the energies and works, and the forces of contacts, in the order of [`values`](Self::values).
+    pub fn groups(&self) -> Vec<Group> {
+        let single = |name: &'static str| Group { name, columns: vec![name.to_string()], is_vector: false };
+        let vectors = ["theta", "dtheta", "ddtheta", "tau"];
+        let vectors = vectors.map(|name| Group { name, columns: columns::names(self.model, name), is_vector: true });
+        let of_contacts = |name: &'static str| Group {
+            name,
+            columns: self.contacts.iter().map(|pair| format!("{name}_{}", pair.name)).collect(),
+            is_vector: true,
+        };
+        let forces = FORCES.into_iter().filter(|_| !self.contacts.is_empty()).map(of_contacts);
+        [single("t")].into_iter().chain(vectors).chain(ENERGIES.map(single)).chain(forces).collect()
+    }
+
+    /// All columns.
+    pub fn names(&self) -> Vec<String> {
+        self.groups().into_iter().flat_map(|group| group.columns).collect()
+    }
+
+    /// The numbers of a row, group after group: of a contact f_n = −fᵀn ≥ 0 and f_t = ‖f + f_n n‖, n out of the plane.
+    pub fn values<'a>(&'a self, row: &'a Sample) -> impl Iterator<Item = f64> + 'a {
+        let energy = &row.energy;
+        let energies = [energy.kinetic, energy.potential, energy.motor_work, energy.friction_loss, energy.applied_work];
+        let vectors = [row.theta, row.dtheta, row.ddtheta, row.tau].into_iter().flatten().copied();
+        let pairs = move || self.contacts.iter().zip(row.contact_forces.as_chunks().0.iter().map(|f| Vec3(*f)));
+        let normal = |(pair, f): (&Pair, Vec3)| -f.dot(pair.up);
+        let forces = pairs().map(normal).chain(pairs().map(move |(pair, f)| (f - pair.up * f.dot(pair.up)).norm()));
+        std::iter::once(row.t).chain(vectors).chain(energies).chain(forces)
+    }
 }

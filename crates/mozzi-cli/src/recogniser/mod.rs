@@ -29,6 +29,15 @@ use unit::Unit;
 /// Columns that `mozzi simulate` writes in addition to the groups; they are read but not used.
 pub const ENERGIES: [&str; 5] = ["kinetic_energy", "potential_energy", "motor_work", "friction_loss", "applied_work"];
 
+/// Its columns of contacts, with --contact-forces: normal and tangential forces, N.
+pub const FORCES: [&str; 2] = ["f_n", "f_t"];
+
+/// Is it a column that `mozzi simulate` writes for other programs?
+pub fn is_own(name: &str) -> bool {
+    ENERGIES.contains(&name)
+        || FORCES.iter().any(|force| name.strip_prefix(force).is_some_and(|rest| rest.starts_with('_')))
+}
+
 /// The groups of columns: the inputs of quantities.
 pub const GROUPS: [&str; INPUTS.len()] = {
     let mut names = [""; INPUTS.len()];

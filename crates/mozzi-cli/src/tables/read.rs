@@ -10,7 +10,7 @@ use crate::columns;
 use crate::failure::{Failure, Result};
 use crate::input::Input;
 use crate::numbers::WRENCH;
-use crate::recogniser::{self, ENERGIES, GROUPS};
+use crate::recogniser::{self, ENERGIES, FORCES, GROUPS};
 use crate::text_table;
 use mozzi::Model;
 use std::cell::Cell;
@@ -107,6 +107,9 @@ fn arrays<'m>(file: &str, choose: Choose<'_, 'm>) -> Result<Samples> {
     let accept = |name: &str, header: &Header| {
         let found = &header.shape;
         let further = ["t", "wrench", "gravity", "parameters"];
+        if FORCES.contains(&name) {
+            return Ok(());
+        }
         let is_known = GROUPS.iter().chain(&further).chain(&ENERGIES).any(|known| *known == name);
         if !is_known && !name.starts_with("wrench_") {
             let all = GROUPS.iter().chain(&further).copied().collect::<Vec<_>>().join(", ");

@@ -223,15 +223,19 @@ impl Contacts<'_> {
             check(is_friction, "the coefficient of friction", says(&format!("{mu:e}")), "0 to 1e6")?;
             let is_ratio = (0.0..=1.0).contains(restitution);
             check(is_ratio, "the coefficient of restitution", says(&format!("{restitution}")), "0 to 1")?;
-            let (radius, axis) = match *support {
-                Support::Point => (0.0, Vec3([0.0, 0.0, 1.0])),
-                Support::Sphere { radius } => (radius, Vec3([0.0, 0.0, 1.0])),
-                Support::Disc { axis, radius } => (radius, axis),
+            let z = Vec3([0.0, 0.0, 1.0]);
+            let (radii, axis) = match *support {
+                Support::Point => ([0.0; 3], z),
+                Support::Sphere { radius } => ([radius; 3], z),
+                Support::Disc { axis, radius } => ([radius; 3], axis),
+                Support::Ellipsoid { radii, .. } => (radii, z),
             };
             let numbers = [center.0, axis.0].concat();
             let is_finite = numbers.iter().all(|x| x.is_finite()) && Scalar::sqrt(axis.dot(axis)) > 0.0;
             check(is_finite, "the shape", says(&format!("{support:?} at {center:?}")), "finite numbers and an axis")?;
-            check(radius >= 0.0 && radius.is_finite(), "the radius", says(&format!("{radius}")), "at least 0")?;
+            for radius in radii {
+                check(radius >= 0.0 && radius.is_finite(), "the radius", says(&format!("{radius}")), "at least 0")?;
+            }
         }
         Ok(())
     }

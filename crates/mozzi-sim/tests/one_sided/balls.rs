@@ -136,6 +136,31 @@ fn a_wheel_rolls_down_inside_the_cone_and_slides_outside() {
 }
 
 #[test]
+fn an_ellipsoid_rocks_at_the_frequency_of_its_curvature() {
+    // at its lowest point the section has radius of curvature ρ = a²/c: (I + mc²)φ̈ = −mg(ρ − c)φ for rolling
+    let [a, b, c] = [0.3, 0.2, 0.1];
+    let I = Sym3::diagonal(b * b + c * c, a * a + c * c, a * a + b * b);
+    let inertia = SpatialInertia::new(1.0, Vec3::zero(), I.map(|x| 0.2 * x));
+    let model = Description::new("egg").link("egg", inertia).floating().build().expect("sound");
+    let frequency = (G * (a * a / c - c) / (0.2 * (a * a + c * c) + c * c)).sqrt();
+    let tilt: f64 = 1e-3;
+    let turn = mozzi::SO3::exp(Vec3([0.0, tilt, 0.0]));
+    let height = ((a * tilt.sin()).powi(2) + (c * tilt.cos()).powi(2)).sqrt();
+    let theta = SE3::new(turn, Vec3([0.0, 0.0, height])).to_pose();
+    let support = Support::Ellipsoid { axes: mozzi::SO3::identity(), radii: [a, b, c] };
+    let contacts = Contacts { points: vec![contact(&model, "egg", support, 1.0, 0.0)], planes: vec![Plane::ground()] };
+    let gaps = contacts.gaps(&model, 0.0, &theta);
+    assert!(gaps[0].abs() < 1e-15, "{gaps:?}");
+    let quarter = 0.5 * std::f64::consts::PI / frequency;
+    let simulation = Simulation { contacts, ..Simulation::new(by(Method::Automatic, quarter, quarter / 500.0)) };
+    let run = simulation.run(&model, &theta, &[0.0; 6], Zero).expect("a motion");
+    let last = run.motion.last();
+    let (rate, expected) = (-last.dtheta[1], tilt * frequency);
+    println!("ellipsoid: rate {rate:.9}, of small motions {expected:.9} rad/s; tilt {:.1e}", last.theta[2]);
+    assert!((rate / expected - 1.0).abs() < 1e-4 && (2.0 * last.theta[2]).abs() < 1e-4 * tilt);
+}
+
+#[test]
 fn planes_move() {
     let model = ball();
     // a lift that accelerates carries the ball

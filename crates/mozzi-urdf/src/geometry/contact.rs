@@ -26,9 +26,9 @@ pub struct ShapeContacts {
 pub const FRICTION: f64 = 0.7;
 
 /// The points at which planes touch shapes, of links that move: the corners of boxes, spheres, the two ends of
-/// capsules, the rims of cylinders as discs, and the extreme vertices of meshes (STL and OBJ; of the 2,000 directions
-/// of a sphere, so at most that many). Ellipsoids are left out. All get the restitution e and the friction coefficient
-/// μ that is given, or else their own, or [`FRICTION`].
+/// capsules, the rims of cylinders as discs, ellipsoids, and the extreme vertices of meshes (STL and OBJ; of the 2,000
+/// directions of a sphere, so at most that many). All get the restitution e and the friction coefficient μ that is
+/// given, or else their own, or [`FRICTION`].
 pub fn contact_points(
     model: &Model,
     shapes: &[Shape],
@@ -103,7 +103,7 @@ fn supports(
         Form::Cylinder { radius, length } => {
             [-0.5, 0.5].map(|s| (at(0.0, 0.0, s * length), Support::Disc { axis, radius: *radius })).to_vec()
         }
-        Form::Ellipsoid { .. } => return Err("planes do not touch ellipsoids".into()),
+        Form::Ellipsoid { radii } => vec![(T.p, Support::Ellipsoid { axes: T.R, radii: *radii })],
         Form::Mesh { file, scale } => {
             let path = locate(robot_file, file, root).map_err(|error| error.to_string())?;
             let vertices = meshes.entry(path).or_insert_with_key(|path| read(path)).clone()?;

@@ -38,6 +38,9 @@ pub struct Geometry {
     pub shapes: Vec<Shape>,
     /// Planes of MJCF's world, with their names.
     pub planes: Vec<(String, SE3)>,
+    /// Attributes of MuJoCo's soft contacts, which mozzi's rigid ones do not use, each with the number of shapes that
+    /// touch and have it.
+    pub soft: Vec<(&'static str, usize)>,
     /// Invalid shapes, which are omitted: warnings, since shapes do not affect the dynamics.
     pub left_out: Vec<Diagnostic>,
 }
@@ -93,8 +96,8 @@ fn parse_in(
     let mut shapes = Vec::new();
     if dialect == Dialect::Mjcf && !findings.has_errors() {
         let mut sources = vec![source];
-        let (shapes, planes, cx) = mjcf::shapes(&mut sources, folder_of(folder, file_name, arguments), arguments);
-        return Ok(Geometry { planes, ..placed(shapes, cx.findings, &sources, dialect) });
+        let (found, cx) = mjcf::shapes(&mut sources, folder_of(folder, file_name, arguments), arguments);
+        return Ok(placed(found, cx.findings, &sources, dialect));
     }
     if dialect == Dialect::Urdf && source.text.trim_start().starts_with('<') {
         match syntax::parse(&source, Dialect::Urdf) {
@@ -110,13 +113,12 @@ fn parse_in(
             }
         }
     }
-    Ok(placed(shapes, findings, &[source], dialect))
+    Ok(placed(Geometry { shapes, ..Geometry::default() }, findings, &[source], dialect))
 }
 
-fn placed(shapes: Vec<Shape>, findings: Findings, sources: &[Source], dialect: Dialect) -> Geometry {
+fn placed(found: Geometry, findings: Findings, sources: &[Source], dialect: Dialect) -> Geometry {
     let placed = Placed::of(findings, sources, dialect);
-    let planes = Vec::new();
-    Geometry { shapes, planes, left_out: placed.diagnostics.into_iter().map(Diagnostic::into_warning).collect() }
+    Geometry { left_out: placed.diagnostics.into_iter().map(Diagnostic::into_warning).collect(), ..found }
 }
 
 #[cfg(test)]

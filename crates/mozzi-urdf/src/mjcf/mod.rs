@@ -74,7 +74,7 @@ pub use explain::codes;
 pub(crate) use orientation::quaternion;
 
 use crate::XacroArguments;
-use crate::geometry::Shape;
+use crate::geometry::Geometry;
 use crate::report::finding::{Finding, Findings};
 use crate::report::places::Places;
 use crate::text::context::Context;
@@ -87,7 +87,7 @@ use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
 use keyframe::Key;
-use mozzi::{Description, SE3};
+use mozzi::Description;
 use option::Options;
 use shapes::Shapes;
 use std::path::Path;
@@ -133,15 +133,11 @@ pub(crate) fn read(
 }
 
 /// From texts to shapes, with the findings about them alone; none if the model is refused.
-pub(crate) fn shapes(
-    sources: &mut Vec<Source>,
-    folder: Option<&Path>,
-    given: &XacroArguments,
-) -> (Vec<Shape>, Vec<(String, SE3)>, Context) {
+pub(crate) fn shapes(sources: &mut Vec<Source>, folder: Option<&Path>, given: &XacroArguments) -> (Geometry, Context) {
     let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
     match read_pages(sources, (folder, given), Wanted::Shapes, &mut cx) {
         Some(Read { description, shapes: Some(shapes), .. }) => shapes.named(&description.links),
-        _ => (Vec::new(), Vec::new(), Context::default()),
+        _ => <_>::default(),
     }
 }
 

@@ -6,7 +6,7 @@ use super::class::{Class, Classes};
 use super::contents::Inside;
 use super::geom::TYPES;
 use super::orientation::pose;
-use crate::geometry::{Form, Purpose, Shape};
+use crate::geometry::{Form, Geometry, Purpose, Shape};
 use crate::report::finding::Finding;
 use crate::text::context::Context;
 use crate::text::element::Element;
@@ -19,6 +19,9 @@ use std::path::Path;
 pub(crate) const LOOKS: [&str; 2] = ["rgba", "material"];
 /// MuJoCo does not draw groups from this one on; by convention they contain the shapes for contacts.
 const FIRST_HIDDEN_GROUP: f64 = 3.0;
+
+/// Attributes of MuJoCo's soft contacts, which rigid contacts do not have.
+const SOFT: [&str; 5] = ["margin", "gap", "solref", "solimp", "solmix"];
 
 /// A mesh of `<asset>`.
 #[derive(Clone)]
@@ -38,6 +41,8 @@ pub(crate) struct Shapes {
     found: Vec<(usize, Shape)>,
     /// Planes of the world that geoms with the usual bits touch.
     planes: Vec<(String, SE3)>,
+    /// Attributes of soft contacts, with the number of geoms that touch and have them.
+    soft: BTreeMap<&'static str, usize>,
     /// Findings about shapes: warnings, since shapes do not affect the dynamics.
     pub cx: Context,
 }
@@ -91,9 +96,11 @@ impl Shapes {
     }
 
     /// The shapes, by the names of their links.
-    pub fn named(self, links: &[mozzi::model::description::Link]) -> (Vec<Shape>, Vec<(String, SE3)>, Context) {
+    pub fn named(self, links: &[mozzi::model::description::Link]) -> (Geometry, Context) {
         let name = |(link, shape): (usize, Shape)| Some(Shape { link: links.get(link)?.name.clone(), ..shape });
-        (self.found.into_iter().filter_map(name).collect(), self.planes, self.cx)
+        let shapes = self.found.into_iter().filter_map(name).collect();
+        let soft = self.soft.into_iter().collect();
+        (Geometry { shapes, planes: self.planes, soft, left_out: Vec::new() }, self.cx)
     }
 
     /// Keeps the shapes of some links and renumbers them.
@@ -137,6 +144,9 @@ impl<'a> Model<'a> {
         let touches = touches(item, &mut shapes.cx);
         if is_clear && !touches {
             return None; // neither drawn nor touched
+        }
+        for attribute in SOFT.into_iter().filter(|attribute| touches && item.has(attribute)) {
+            *shapes.soft.entry(attribute).or_default() += 1;
         }
         let has_own = item.has("friction"); // the first of up to three; MuJoCo's is 1
         let friction = Some(if has_own { item.overlaid::<3>("friction", &mut shapes.cx)[0] } else { 1.0 });

@@ -1,6 +1,7 @@
 //! Points of a robot that planes can touch.
 
 use super::FrameId;
+use crate::lie::SO3;
 use crate::linalg::Vec3;
 use alloc::string::String;
 
@@ -38,6 +39,13 @@ pub enum Support {
         /// m
         radius: f64,
     },
+    /// An ellipsoid.
+    Ellipsoid {
+        /// Its axes in the frame.
+        axes: SO3,
+        /// The half axes, m.
+        radii: [f64; 3],
+    },
 }
 
 impl ContactPoint {
@@ -51,10 +59,11 @@ impl ContactPoint {
         match self.support {
             Support::Point => 0.0,
             Support::Sphere { radius } | Support::Disc { radius, .. } => radius,
+            Support::Ellipsoid { radii: [a, b, c], .. } => a.max(b).max(c),
         }
     }
 
-    /// The point that is farthest in a direction, in the frame.
+    /// The point that is farthest in a direction of unit length, in the frame.
     pub fn farthest(&self, direction: Vec3) -> Vec3 {
         match self.support {
             Support::Point => self.center,
@@ -65,6 +74,13 @@ impl ContactPoint {
                 let size = within.norm();
                 // a disc that lies flat touches with its centre
                 if size > 1e-12 { self.center + within * (radius / size) } else { self.center }
+            }
+            Support::Ellipsoid { axes, radii } => {
+                // R D² Rᵀd / ‖D Rᵀd‖ with D = diag(radii)
+                let scaled = |d: Vec3| Vec3(core::array::from_fn(|k| radii[k] * d.0[k]));
+                let within = scaled(axes.inverse_mul(direction));
+                let size = within.norm();
+                if size > 0.0 { self.center + axes * scaled(within * (1.0 / size)) } else { self.center }
             }
         }
     }

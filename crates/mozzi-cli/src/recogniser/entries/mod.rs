@@ -9,7 +9,7 @@ pub use similar::{holds_names, is_alike};
 use super::reading::{self, Entry, Kind, Reading, suits};
 use super::unit::Dimension;
 use super::word::{DDTHETA, DTHETA, Origin, TAU, THETA};
-use super::{Column, ENERGIES, GROUPS, Header, Request, Role, columns};
+use super::{Column, GROUPS, Header, Request, Role, columns, is_own};
 use crate::failure::{Failure, Result};
 use mozzi::Model;
 use std::collections::BTreeMap;
@@ -163,7 +163,7 @@ impl Search<'_> {
             if roles[column] != Role::Unused("unknown name") {
                 continue;
             }
-            if ENERGIES.contains(&name.as_str()) || name == "method" {
+            if is_own(name) || name == "method" {
                 roles[column] = Role::Unused("mozzi's own");
                 continue;
             }
