@@ -3,9 +3,9 @@
 use crate::border::{check_finite, slice, slice_mut};
 use crate::handle::{Handle, borrow, check_pointer, clear, free, kind, put};
 use crate::program::ProgramHandle;
-use crate::quantity::{CSubject, declaration};
 use crate::robot::{Frame, ModelHandle, Robot};
 use crate::status::{Outcome, Status, guard, of_batch, refuse};
+use crate::subject::{CSubject, declaration};
 use mozzi::{Environment, FrameId, Vec3};
 use mozzi_engine::{Batch, BatchEnvironment};
 use mozzi_sim::Method;

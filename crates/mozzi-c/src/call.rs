@@ -3,45 +3,14 @@
 use crate::border::{check_finite, slice};
 use crate::environment::CEnvironment;
 use crate::handle::{borrow, check_pointer};
-use crate::robot::{Frame, ModelHandle, Robot, shapes};
-use crate::status::{Outcome, Status, guard, of_model, refuse};
+use crate::robot::{ModelHandle, Robot, shapes};
+use crate::status::{Outcome, Status, guard, refuse};
+use crate::subject::Given;
 use crate::workspace::{Memory, WorkspaceHandle};
+use mozzi::Environment;
 use mozzi::fast::{self, Singular};
-use mozzi::quantities::{Dim, Of, Query};
-use mozzi::{Environment, TaskFrame, Vec3};
+use mozzi::quantities::{Dim, Of};
 use std::sync::Arc;
-
-/// `mozzi_task`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct Task {
-    frame: Frame,
-    coordinates: i32,
-    rows: *const usize,
-    row_count: usize,
-}
-
-impl Task {
-    pub fn frame(&self) -> Frame {
-        self.frame
-    }
-}
-
-/// The arguments of a call besides inputs and outputs; those that a quantity does not have are null or 0.
-#[derive(Clone, Copy, Debug)]
-pub struct Given {
-    pub frame: Frame,
-    pub task: *const Task,
-    pub about: *const f64,
-    pub environment: *const CEnvironment,
-}
-
-impl Default for Given {
-    fn default() -> Self {
-        let (task, about, environment) = (std::ptr::null(), std::ptr::null(), std::ptr::null());
-        Given { frame: 0, task, about, environment }
-    }
-}
 
 /// Where an output goes: its address and the strides of its last three axes, in numbers.
 #[derive(Clone, Copy, Debug)]
@@ -87,62 +56,6 @@ impl From<Tensor> for Out {
     #[inline(always)]
     fn from(Tensor { data, block_stride, row_stride, column_stride }: Tensor) -> Self {
         Out { data, strides: [block_stride, row_stride, column_stride] }
-    }
-}
-
-impl Given {
-    /// The quantity of this index with its frame, task or point.
-    ///
-    /// # Safety
-    /// The pointers are null or valid as long as 'a.
-    #[inline(always)]
-    pub unsafe fn query<'a>(&self, robot: &Robot, index: usize) -> Outcome<Query<'a>> {
-        let mut query: Query<'a> = Query::at(index);
-        match query.declaration().of {
-            Of::Robot => {}
-            Of::Frame => query.subject.frame = Some(robot.frame(self.frame)?),
-            // SAFETY: the caller's promise.
-            Of::Task => query = unsafe { self.of_task(robot, query)? },
-            Of::Point if !self.about.is_null() => {
-                // SAFETY: the caller's promise.
-                let about = unsafe { slice(self.about, 3, "about")? };
-                check_finite(about, "about")?;
-                query.subject.point = Vec3([about[0], about[1], about[2]]);
-            }
-            Of::Point => {}
-        }
-        if query.declaration().needs_mass {
-            query.check_subject(&robot.model).map_err(|error| of_model(&error))?;
-        }
-        Ok(query)
-    }
-
-    /// # Safety
-    /// As [`query`](Self::query).
-    unsafe fn of_task<'a>(&self, robot: &Robot, mut query: Query<'a>) -> Outcome<Query<'a>> {
-        check_pointer(self.task, "task")?;
-        // SAFETY: the caller's promise.
-        let task = unsafe { &*self.task };
-        query.subject.frame = Some(robot.frame(task.frame)?);
-        query.subject.coordinates = match task.coordinates {
-            0 => TaskFrame::Body,
-            1 => TaskFrame::Space,
-            other => {
-                return refuse!(
-                    Status::INVALID_ARGUMENT,
-                    "task.coordinates is {other}, expected MOZZI_BODY or MOZZI_SPACE"
-                );
-            }
-        };
-        if task.row_count > 6 {
-            return refuse!(Status::INVALID_ARGUMENT, "the task has {} rows, expected at most 6", task.row_count);
-        }
-        if task.row_count > 0 {
-            // SAFETY: the caller's promise.
-            query.subject.rows = unsafe { slice(task.rows, task.row_count, "task.rows")? };
-        }
-        query.check_subject(&robot.model).map_err(|error| of_model(&error))?;
-        Ok(query)
     }
 }
 

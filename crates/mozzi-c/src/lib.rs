@@ -20,6 +20,7 @@ mod robot;
 mod simulate;
 mod states;
 mod status;
+mod subject;
 mod typed;
 mod workspace;
 

@@ -2,9 +2,9 @@
 
 use crate::border::slice;
 use crate::handle::{Handle, borrow, clear, free, kind, put};
-use crate::quantity::CSubject;
 use crate::robot::{ModelHandle, Robot};
 use crate::status::{Status, guard, guard_or, of_model};
+use crate::subject::CSubject;
 use mozzi_engine::{Compiled, Engine};
 use std::sync::Arc;
 

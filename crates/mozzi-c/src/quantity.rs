@@ -1,23 +1,16 @@
 //! Quantities by name or number: what they are, and calls with checked lengths.
 
 use crate::border::{check_length, slice, text};
-use crate::call::{Given, Out, Task, call_of_any};
+use crate::call::{Out, call_of_any};
 use crate::environment::CEnvironment;
 use crate::handle::{borrow, check_pointer};
-use crate::robot::{ModelHandle, Robot, shapes};
+use crate::robot::{ModelHandle, shapes};
 use crate::status::{Outcome, Status, guard, guard_or, of_model, refuse};
+use crate::subject::{CSubject, Given, declaration};
 use crate::workspace::WorkspaceHandle;
-use mozzi::quantities::{Declaration, LIST, MOST_INPUTS, MOST_OUTPUTS, Query, Subject};
+use mozzi::quantities::{LIST, MOST_INPUTS, MOST_OUTPUTS, Query, Subject};
 use std::ffi::{CString, c_char};
 use std::sync::OnceLock;
-
-/// `mozzi_subject`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct CSubject {
-    pub task: Task,
-    pub about: [f64; 3],
-}
 
 /// `mozzi_input`.
 #[repr(C)]
@@ -34,43 +27,6 @@ pub struct COutput {
     data: *mut f64,
     length: usize,
     strides: [isize; 3],
-}
-
-/// The declaration of this number.
-pub fn declaration(quantity: i32) -> Outcome<(usize, &'static Declaration)> {
-    let index = usize::try_from(quantity).unwrap_or(usize::MAX);
-    match LIST.get(index) {
-        Some(declaration) => Ok((index, declaration)),
-        None => refuse!(Status::NOT_FOUND, "there is no quantity {quantity}: there are {}", LIST.len()),
-    }
-}
-
-impl CSubject {
-    /// The other arguments of a call, of a subject that may be null.
-    ///
-    /// # Safety
-    /// The pointer is null or valid.
-    unsafe fn given(this: *const CSubject, environment: *const CEnvironment) -> Outcome<Given> {
-        if this.is_null() {
-            return Ok(Given { environment, ..Given::default() });
-        }
-        check_pointer(this, "subject")?;
-        // SAFETY: the caller's promise.
-        let this = unsafe { &*this };
-        Ok(Given { frame: this.task.frame(), task: &raw const this.task, about: this.about.as_ptr(), environment })
-    }
-
-    /// The quantity of this number, with its subject.
-    ///
-    /// # Safety
-    /// As [`Given::query`].
-    pub unsafe fn query<'a>(this: *const CSubject, robot: &Robot, quantity: i32) -> Outcome<Query<'a>> {
-        let (index, _) = declaration(quantity)?;
-        // SAFETY: the caller's promise.
-        let query = unsafe { CSubject::given(this, std::ptr::null())?.query(robot, index)? };
-        query.check_subject(&robot.model).map_err(|error| of_model(&error))?;
-        Ok(query)
-    }
 }
 
 /// How many quantities there are.

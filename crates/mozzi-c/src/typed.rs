@@ -1,10 +1,11 @@
 //! A function for each quantity, typed: `mozzi_inverse_dynamics(model, workspace, theta, …, tau)`. Their list is
 //! written from that of the quantities, with their declarations in mozzi.h, by `tests/header.rs`.
 
-use crate::call::{Given, Matrix, Out, Task, Tensor, call};
+use crate::call::{Matrix, Out, Tensor, call};
 use crate::environment::CEnvironment;
 use crate::robot::{Frame, ModelHandle};
 use crate::status::Status;
+use crate::subject::{Given, Task};
 use crate::workspace::WorkspaceHandle;
 use mozzi::quantities::{self, Query};
 

@@ -7,7 +7,7 @@ use crate::expression::{Value, text_of};
 use crate::fault::{Fault, Result};
 use crate::place::Place;
 use crate::scope::{Macros, Property, Scope};
-use crate::text::is_space;
+use crate::space::is_space;
 use std::rc::Rc;
 
 impl Expander<'_> {

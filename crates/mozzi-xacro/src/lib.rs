@@ -38,6 +38,7 @@ mod parse;
 mod place;
 mod property;
 mod scope;
+mod space;
 mod substitution;
 mod text;
 mod write;

@@ -1,7 +1,7 @@
 //! The parameters of a macro: `a b:=1 c:=^ d:=^|2 *block **blocks`.
 
 use crate::scope::Parameter;
-use crate::text::is_space;
+use crate::space::is_space;
 
 /// The parameters of the attribute `params`.
 pub(crate) fn parse(text: &str) -> Vec<Parameter> {

@@ -2,7 +2,7 @@
 
 use crate::condition;
 use crate::expander::Expander;
-use crate::expression::{Evaluator, Value, global, parse, parse_float, parse_int, text_of};
+use crate::expression::{Value, evaluate, global, parse, parse_float, parse_int, text_of};
 use crate::fault::{Fault, Result};
 use crate::scope::Scope;
 use std::rc::Rc;
@@ -106,7 +106,7 @@ impl Expander<'_> {
             false => Box::new(Fault { at: None, ..*fault }),
         };
         let tree = parse(trimmed).map_err(place)?;
-        let value = Evaluator { host: self }.evaluate(&tree).map_err(place)?;
+        let value = evaluate(self, &tree).map_err(place)?;
         Ok(Value::text(text_of(&self.budget, &value)?))
     }
 

@@ -1,16 +1,12 @@
 //! Text with `${expressions}` and `$(substitutions)`.
 
 use crate::expander::{Expander, Names};
-use crate::expression::{self, Evaluator, Value, text_of};
+use crate::expression::{self, Value, evaluate, text_of};
 use crate::fault::{Fault, Result};
 use crate::place::Place;
 use crate::scope::Scope;
+use crate::space::is_space;
 use std::rc::Rc;
-
-/// White space as in Python.
-pub(crate) fn is_space(c: char) -> bool {
-    c.is_whitespace() || ('\x1c'..='\x1f').contains(&c)
-}
 
 /// A piece of a text.
 enum Piece<'t> {
@@ -143,7 +139,7 @@ impl Expander<'_> {
         };
         let names = Names { expander: self, scope };
         // a missing file inside another expression is an error of that expression
-        Evaluator { host: &names }.evaluate(&tree).map_err(|fault| {
+        evaluate(&names, &tree).map_err(|fault| {
             let is_missing_file = fault.is_missing_file && fault.place.is_none();
             place(Box::new(Fault { is_missing_file, ..*fault }))
         })

@@ -5,7 +5,7 @@ use crate::bounds::MOST_BYTES;
 use crate::document::{Content, Document, Id};
 use crate::fault::{Fault, Result};
 use crate::place::Place;
-use crate::text::is_space;
+use crate::space::is_space;
 use std::ops::Range;
 
 /// A part of the written text, and its origin.

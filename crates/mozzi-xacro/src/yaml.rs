@@ -3,7 +3,7 @@
 
 use crate::expander::Expander;
 use crate::expander::Names;
-use crate::expression::{Dictionary, Evaluator, Host, Value, parse};
+use crate::expression::{Dictionary, Host, Value, evaluate, parse};
 use crate::fault::{Fault, Result};
 use crate::scope::Scope;
 use crate::yaml_scalar::plain;
@@ -137,8 +137,8 @@ impl Expander<'_> {
         // an expression that sees functions and constants only
         let scope = Rc::new(Scope::default());
         let names = Names { expander: self, scope: &scope };
-        let tree = parse(text.trim_matches(crate::text::is_space))?;
-        let value = Evaluator { host: &names as &dyn Host }.evaluate(&tree)?;
+        let tree = parse(text.trim_matches(crate::space::is_space))?;
+        let value = evaluate(&names as &dyn Host, &tree)?;
         let number = match &value {
             Value::Str(text) => crate::expression::parse_float(text),
             other => crate::expression::float_of(other).ok(),

@@ -3,8 +3,9 @@
 use crate::program::derivative::derivative;
 use crate::program::estimate::is_deep;
 use crate::program::needed;
-use crate::program::record::{TooLong, record};
+use crate::program::record::record;
 use crate::program::robot_number::RobotNumber;
+use crate::program::too_long::TooLong;
 use crate::program::{Derivative, Program, Traced};
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsParameterVjp, ForwardDynamicsVjp, Memory, Of, Query};
 use mozzi::{Environment, Error, FrameId, Model, Twist, Vec3, Wrench};

@@ -1,7 +1,8 @@
 //! Derivatives of programs, which are programs again: forward, on dual numbers, while another program is recorded; and
 //! backward, from the outputs to the inputs.
 
-use crate::program::record::{TooLong, record};
+use crate::program::record::record;
+use crate::program::too_long::TooLong;
 use crate::program::{Function, Program, Step, Traced};
 use mozzi::{Dual, Freedom, Model, SO3, Vec3};
 

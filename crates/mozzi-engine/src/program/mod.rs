@@ -10,6 +10,7 @@ mod record;
 mod robot_number;
 mod tape;
 mod text;
+mod too_long;
 mod traced;
 
 pub use arguments::{Arguments, pivot_names, record_quantity};
@@ -17,8 +18,9 @@ pub use count::Count;
 pub use derivative::{Derivative, Product};
 pub use estimate::{LONGEST_TEXT, estimate, is_too_long};
 pub use function::Function;
-pub use record::{TooLong, record};
+pub use record::record;
 pub use text::NotAProgram;
+pub use too_long::TooLong;
 pub use traced::Traced;
 
 use mozzi::Scalar;

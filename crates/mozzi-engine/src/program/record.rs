@@ -3,8 +3,8 @@
 use crate::program::Function;
 use crate::program::Traced;
 use crate::program::tape::{self, Node, Tape};
+use crate::program::too_long::TooLong;
 use crate::program::{Array, Output, Program, Step, Value};
-use std::fmt;
 
 /// Records the program that `body` executes on these input arrays (name and length); it returns named output arrays.
 /// The kernels of `mozzi` run in it unchanged: see [`Program`](crate::Program).
@@ -31,27 +31,6 @@ pub fn record<'n>(
     let (steps, outputs) = finish(tape, &outputs);
     Ok(Program { name: name.to_string(), inputs, steps, outputs, asked })
 }
-
-/// A recording had more than [`MOST_STEPS`](TooLong::MOST_STEPS) steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TooLong;
-
-impl TooLong {
-    /// The largest number of steps, whose recording takes [`MOST_MEGABYTES`](Self::MOST_MEGABYTES).
-    pub const MOST_STEPS: usize = 4_000_000;
-
-    /// Memory of a recording of that length, in megabytes.
-    pub const MOST_MEGABYTES: usize = 500;
-}
-
-impl fmt::Display for TooLong {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (steps, memory) = (Self::MOST_STEPS, Self::MOST_MEGABYTES);
-        write!(f, "longer than {steps} steps, which take {memory} MB")
-    }
-}
-
-impl std::error::Error for TooLong {}
 
 /// The steps that the outputs need, in the order of the tape: products are fused with sums, and the sign is computed if
 /// an output is the negative of a node.

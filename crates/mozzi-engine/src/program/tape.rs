@@ -7,7 +7,7 @@
 use crate::program::Count;
 use crate::program::Function;
 use crate::program::Traced;
-use crate::program::record::TooLong;
+use crate::program::too_long::TooLong;
 use mozzi::Scalar;
 use std::cell::RefCell;
 use std::collections::HashMap;

@@ -1,9 +1,9 @@
 //! Comprehensions and generator expressions.
 
-use super::dictionary::Dictionary;
-use super::evaluate::{Bindings, Evaluator, bind};
-use super::syntax::{Clause, Comprehension, Form, Target};
-use super::value::Value;
+use crate::expression::operations::context::Evaluator;
+use crate::expression::syntax::{Clause, Comprehension, Form, Target};
+use crate::expression::values::value::Dictionary;
+use crate::expression::values::value::{Bindings, Value, bind};
 use crate::fault::{Fault, Result};
 use std::cell::RefCell;
 use std::collections::VecDeque;

@@ -1,43 +1,29 @@
 //! Evaluates a syntax tree.
 
-use super::arguments::Arguments;
-use super::syntax::{Argument, Binary, Compare, Kind, Lambda, Node, Unary};
-use super::token::KEYWORDS;
-use super::value::Value;
-use super::{Host, compare, dictionary::Dictionary, function, index, methods, operators};
+use crate::expression::library::function;
+use crate::expression::library::methods;
+use crate::expression::operations::arguments::Arguments;
+use crate::expression::operations::compare;
+use crate::expression::operations::context::Evaluator;
+use crate::expression::operations::host::Host;
+use crate::expression::operations::index;
+use crate::expression::operations::operators;
+use crate::expression::syntax::names::KEYWORDS;
+use crate::expression::syntax::{Argument, Binary, Compare, Kind, Node, Unary};
+use crate::expression::values::kinds;
+use crate::expression::values::value::Dictionary;
+use crate::expression::values::value::{Bindings, Lambda, Value, bind};
 use crate::fault::{Fault, Result};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Names that comprehensions and lambdas bind, innermost first.
-pub(crate) type Bindings = Option<Rc<Binding>>;
-
-pub(crate) struct Binding {
-    pub name: Rc<str>,
-    pub value: Value,
-    pub outer: Bindings,
-}
-
-/// Binds a name.
-pub(crate) fn bind(bindings: &Bindings, name: &Rc<str>, value: Value) -> Bindings {
-    Some(Rc::new(Binding { name: name.clone(), value, outer: bindings.clone() }))
-}
-
-/// Evaluates trees for a host.
-#[derive(Clone, Copy)]
-pub(crate) struct Evaluator<'h> {
-    pub host: &'h dyn Host,
+/// The value of a tree for a host.
+pub(crate) fn evaluate(host: &dyn Host, node: &Node) -> Result<Value> {
+    let calls = |cx: &Evaluator, called: &Value, arguments| cx.call_value(called, arguments);
+    Evaluator { host, calls, attributes: methods::attribute }.value(node, &None)
 }
 
 impl Evaluator<'_> {
-    pub fn evaluate(&self, node: &Node) -> Result<Value> {
-        self.value(node, &None)
-    }
-
-    pub fn spend(&self, work: u64) -> Result<()> {
-        self.host.budget().spend(work)
-    }
-
     /// The value of a node; an error gets the node's place, if it has none of its own.
     pub fn value(&self, node: &Node, bindings: &Bindings) -> Result<Value> {
         let budget = self.host.budget();
@@ -46,7 +32,7 @@ impl Evaluator<'_> {
 
     fn part(&self, node: &Node, bindings: &Bindings) -> Result<Value> {
         match &node.kind {
-            Kind::Constant(value) => Ok(value.clone()),
+            Kind::Constant(literal) => Ok(Value::from(literal)),
             Kind::Name(name) => self.name(name, bindings),
             Kind::List(items) => Ok(Value::list(self.items(items, bindings)?)),
             Kind::Tuple(items) => Ok(Value::Tuple(self.items(items, bindings)?.into())),
@@ -176,7 +162,7 @@ impl Evaluator<'_> {
         for (value, bound) in values.iter_mut().zip(bounds) {
             if let Some(bound) = bound {
                 let bound = self.value(bound, bindings)?;
-                *value = if matches!(bound, Value::None) { None } else { Some(index::whole(&bound, "a slice")?) };
+                *value = if matches!(bound, Value::None) { None } else { Some(kinds::whole(&bound, "a slice")?) };
             }
         }
         index::slice(self, &of, values)
@@ -224,7 +210,7 @@ impl Evaluator<'_> {
     }
 
     /// Calls a function, a method or a lambda.
-    pub fn call(&self, called: &Value, mut arguments: Arguments) -> Result<Value> {
+    fn call_value(&self, called: &Value, mut arguments: Arguments) -> Result<Value> {
         self.spend(1)?;
         match called {
             Value::Function(function) => function::call(self, *function, arguments),
