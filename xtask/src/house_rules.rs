@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// arrays, Python's methods, XLA's calls, C's pointers, and exports to JavaScript. Each entry is a path prefix.
 const UNSAFE_ALLOWED: [&str; 12] = [
     "crates/mozzi/src/fast",
-    "crates/mozzi/src/scalar/lanes",
+    "crates/mozzi/src/scalar/fused_lanes",
     "crates/mozzi/src/scalar/pass",
     "crates/mozzi-engine/src/jit/executable",
     "crates/mozzi-gpu/src/nvrtc",

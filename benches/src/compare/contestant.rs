@@ -1,11 +1,7 @@
 //! A contestant: a library, or one of mozzi's ways to compute, with one robot and its states.
 
-use crate::mozzi_ways;
 use crate::peak::Width;
-use crate::peer::Peer;
-use mozzi::Model;
 use mozzi::quantities::Query;
-use mozzi_benches::States;
 
 /// One library, or one way of mozzi, that holds a robot and all states.
 pub trait Contestant {
@@ -27,15 +23,4 @@ pub struct Entry<'a> {
     /// For mozzi's ways, the instructions used; none for a peer.
     pub width: Option<Width>,
     pub contestant: Box<dyn Contestant + 'a>,
-}
-
-/// All contestants that support this robot; the first is mozzi at one state, which gives the reference and the unit.
-pub fn all<'a>(name: &str, model: &'a Model, states: &'a States, peers: &'a [Peer]) -> Result<Vec<Entry<'a>>, String> {
-    let mut entries = mozzi_ways::all(model, states)?;
-    for peer in peers {
-        if let Some(robot) = peer.robot(name, model, states)? {
-            entries.push(Entry { name: peer.name.clone(), width: None, contestant: Box::new(robot) });
-        }
-    }
-    Ok(entries)
 }

@@ -10,6 +10,7 @@ mod contestant;
 mod convention;
 mod count;
 mod machine;
+mod motion;
 mod mozzi_ways;
 mod peak;
 mod peer;

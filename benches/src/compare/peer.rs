@@ -2,8 +2,8 @@
 
 use crate::contestant::Contestant;
 use crate::convention::Convention;
+use crate::motion::{BRAKE, STEP, STEPS};
 use crate::quantity;
-use crate::simulation::{BRAKE, STEP, STEPS};
 use libloading::{Library, Symbol};
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, JointKind};
 use mozzi::quantities::Query;

@@ -1,8 +1,9 @@
 //! One robot: checks that all values agree, then times all algorithms in turn, repeatedly.
 
 use crate::compiled;
-use crate::contestant::{self, Entry};
+use crate::contestant::Entry;
 use crate::count::{Count, count};
+use crate::mozzi_ways;
 use crate::peak::Width;
 use crate::peer::Peer;
 use crate::quantity;
@@ -71,7 +72,7 @@ struct Runner {
 /// Measures all contestants on one robot.
 pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Duration) -> Result<Table, String> {
     let states = States::with_count(model, if model.n() > 50 { States::COUNT / 8 } else { States::COUNT });
-    let mut entries = contestant::all(slug, model, &states, peers)?;
+    let mut entries = all(slug, model, &states, peers)?;
     let columns = checked(title, model, &states, &mut entries)?;
     let mut runners = Vec::new();
     for (entry, Entry { contestant, .. }) in entries.iter().enumerate() {
@@ -153,4 +154,15 @@ fn fastest(runners: &[Runner], entry: usize, query: Query) -> Option<Time> {
 pub fn of_runs(algorithm: &str, flops: Option<usize>, mut times: Vec<f64>) -> Option<Time> {
     times.sort_by(f64::total_cmp);
     Some(Time { algorithm: algorithm.into(), least: *times.first()?, median: times[times.len() / 2], flops })
+}
+
+/// All contestants that support this robot; the first is mozzi at one state, which gives the reference and the unit.
+fn all<'a>(name: &str, model: &'a Model, states: &'a States, peers: &'a [Peer]) -> Result<Vec<Entry<'a>>, String> {
+    let mut entries = mozzi_ways::all(model, states)?;
+    for peer in peers {
+        if let Some(robot) = peer.robot(name, model, states)? {
+            entries.push(Entry { name: peer.name.clone(), width: None, contestant: Box::new(robot) });
+        }
+    }
+    Ok(entries)
 }

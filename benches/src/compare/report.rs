@@ -1,11 +1,12 @@
 //! The tables, as Markdown.
 
 use crate::machine;
+use crate::motion::{BRAKE, STEP, STEPS};
 use crate::peak::Width;
 use crate::peer::Peer;
 use crate::quantity;
 use crate::race::{Row, Table, Time};
-use crate::simulation::{BRAKE, METHODS, STEP, STEPS, Simulated};
+use crate::simulation::{METHODS, Simulated};
 use mozzi::quantities::Query;
 use std::fmt::Write;
 

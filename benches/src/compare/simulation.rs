@@ -2,6 +2,7 @@
 //! evaluations at known states.
 
 use crate::contestant::Contestant;
+use crate::motion::{BRAKE, STEP, STEPS};
 use crate::peer::Peer;
 use crate::race::{LARGEST_DIFFERENCE, Time, of_runs};
 use mozzi::Model;
@@ -10,12 +11,6 @@ use mozzi_benches::States;
 use mozzi_engine::{Compiled, compile};
 use mozzi_sim::{Method, Options, torque};
 use std::time::{Duration, Instant};
-
-pub const STEPS: usize = 1000;
-/// Seconds.
-pub const STEP: f64 = 1e-3;
-/// τ = −BRAKE θ̇, in N m s.
-pub const BRAKE: f64 = 0.1;
 
 /// The methods whose loop is timed.
 pub const METHODS: [Method; 2] = [Method::Euler, Method::RungeKutta4];

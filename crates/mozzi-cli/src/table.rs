@@ -1,6 +1,7 @@
 //! Rows of quantities, one entry for each joint.
 
 use crate::angles;
+use crate::numbers::TWIST;
 use crate::robot::Units;
 use crate::text::{Decimals, page_width, rows_of, table, width};
 use mozzi::Model;
@@ -146,4 +147,14 @@ pub fn short(values: &[f64]) -> String {
     let decimals = Decimals::of(values);
     let entries: Vec<String> = values.iter().map(|&x| decimals.show(x).trim().to_string()).collect();
     format!("({})", entries.join(", "))
+}
+
+/// A Jacobian's lines.
+pub fn with_rows_named(lines: Vec<String>) -> Vec<String> {
+    let mut names = TWIST.iter().cycle();
+    let named = |line: String| match line.starts_with("columns") {
+        true => line,
+        false => format!("{} {line}", names.next().unwrap_or(&"")),
+    };
+    lines.into_iter().map(named).collect()
 }

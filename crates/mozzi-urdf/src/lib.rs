@@ -88,6 +88,7 @@ use report::{problem, repair};
 use std::path::Path;
 use text::context::Context;
 use text::dialect::Dialect;
+use text::element::Element;
 use text::pages::Pages;
 use text::source::Source;
 use text::{bytes, expansion, syntax};
@@ -234,7 +235,7 @@ pub fn open_with(name_or_path: &str, settings: impl Into<Settings>) -> Result<Lo
 /// From a text of URDF to a description; all findings are collected.
 fn read_urdf(source: &Source, cx: &mut Context) -> Option<(Description, Places)> {
     match syntax::parse(source, Dialect::Urdf) {
-        Ok(document) => robot::read(&Pages::single(source, document).root("robot")?, cx),
+        Ok(document) => robot::read(&Element::root(&Pages::single(source, document), "robot")?, cx),
         Err(finding) => {
             cx.findings.add(finding);
             None

@@ -14,12 +14,11 @@ mod word;
 mod wrench;
 
 pub use entries::{Force, IS_CURRENT, holds_names, is_alike};
-pub use show::Row;
 pub use time::Time;
 
 use crate::columns;
 use crate::failure::{Failure, Result};
-use crate::tables::samples::Samples;
+use crate::tables::samples::{Row, Samples};
 use crate::text_table::clock;
 use mozzi::Model;
 use mozzi::quantities::INPUTS;

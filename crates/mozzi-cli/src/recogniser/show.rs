@@ -1,16 +1,8 @@
 //! The table column → meaning, unit, joint.
 
 use super::{Column, GROUPS, Header, Role, Time, columns};
+use crate::tables::samples::Row;
 use mozzi::Model;
-
-/// A column with its meaning.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    pub column: String,
-    pub meaning: String,
-    pub unit: String,
-    pub joint: String,
-}
 
 /// The meaning of every column.
 pub fn rows(

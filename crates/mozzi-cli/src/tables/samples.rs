@@ -3,9 +3,17 @@
 use crate::columns::names;
 use crate::failure::{Failure, Result};
 use crate::numbers::WRENCH;
-use crate::recogniser::Row;
 use mozzi::Model;
 use std::collections::BTreeMap;
+
+/// A column with its meaning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    pub column: String,
+    pub meaning: String,
+    pub unit: String,
+    pub joint: String,
+}
 
 /// Numbers by name: those of the inputs, `wrench` of the tip; for .npz also `gravity`, `parameters` and `wrench_FRAME`.
 #[derive(Debug, Default)]

@@ -22,11 +22,12 @@ use crate::report::finding::Findings;
 use crate::report::placed::Placed;
 use crate::text::context::Context;
 use crate::text::dialect::Dialect;
+use crate::text::element::Element;
 use crate::text::expansion;
 use crate::text::pages::Pages;
 use crate::text::source::Source;
 use crate::text::{bytes, syntax};
-use crate::urdf::version::Version;
+use crate::urdf::version;
 use crate::{embedded, file_bytes, folder_of, mjcf};
 use mozzi::SE3;
 use std::path::Path;
@@ -104,8 +105,8 @@ fn parse_in(
             Err(finding) => findings.add(finding),
             Ok(document) => {
                 let mut cx = Context::new(findings, Dialect::Urdf);
-                if let Some(root) = Pages::single(&source, document).root("robot") {
-                    cx.version = Version::read(&root, &mut cx);
+                if let Some(root) = Element::root(&Pages::single(&source, document), "robot") {
+                    cx.version = version::read(&root, &mut cx);
                     shapes = read::robot(&root, &mut cx);
                     cx.report_repeated();
                 }

@@ -1,13 +1,16 @@
 //! The attributes of an element, its own and those of its class.
 
-use super::class::Values;
 use crate::report::finding::Finding;
 use crate::report::spelling::did_you_mean;
 use crate::text::context::Context;
 use crate::text::element::{Element, Value};
 use crate::text::number::{NotNumbers, numbers, up_to};
 use crate::urdf::vocabulary::{list, shown};
+use std::collections::BTreeMap;
 use std::rc::Rc;
+
+/// The values of attributes, outermost class first.
+pub(crate) type Values<'a> = BTreeMap<&'static str, Vec<Value<'a>>>;
 
 /// An element with or without a default class.
 #[derive(Clone)]

@@ -1,19 +1,15 @@
 //! `<default>`: classes of values for attributes that are not written.
 
-use super::attributes::Item;
+use super::attributes::{Item, Values};
 use super::law::{self, Law};
-use super::shapes::LOOKS;
 use super::vocabulary;
 use crate::report::finding::Finding;
 use crate::report::spelling::did_you_mean;
 use crate::text::context::Context;
-use crate::text::element::{Element, Value};
+use crate::text::element::Element;
 use crate::urdf::vocabulary::{Vocabulary, shown};
 use std::collections::BTreeMap;
 use std::rc::Rc;
-
-/// The values of attributes, outermost class first.
-pub(crate) type Values<'a> = BTreeMap<&'static str, Vec<Value<'a>>>;
 
 /// Largest number of names that are searched for suggestions.
 pub(crate) const MOST_SUGGESTED: usize = 100;
@@ -71,7 +67,7 @@ impl<'a> Classes<'a> {
     fn fill(&mut self, element: &Element<'a>, class: Class, depth: usize, cx: &mut Context) {
         element.check_attributes(&vocabulary::DEFAULT, cx);
         element.check_children(&vocabulary::DEFAULT, cx);
-        if super::contents::is_too_deep(element, depth, cx) {
+        if super::depth::is_too_deep(element, depth, cx) {
             return;
         }
         for child in element.elements() {
@@ -95,7 +91,7 @@ impl<'a> Classes<'a> {
                 child.check_attributes(words, cx);
             }
             if tag == "geom" {
-                self.keep(class, tag, &LOOKS, &child);
+                self.keep(class, tag, &vocabulary::LOOKS, &child);
             }
             let values = Rc::make_mut(self.values[class.0].entry(tag).or_default());
             for &name in words.attributes {

@@ -3,12 +3,12 @@
 use super::Model;
 use super::attributes::Item;
 use super::class::Class;
+use super::depth::is_too_deep;
 use super::orientation::pose;
 use super::vocabulary;
 use crate::report::finding::Finding;
 use crate::text::context::Context;
 use crate::text::element::Element;
-use crate::text::scan::MOST_DEPTH;
 use mozzi::SE3;
 
 /// An element of a body, with the configuration of its frame relative to the body's.
@@ -29,15 +29,6 @@ pub(crate) struct Contents<'a> {
     pub sites: Vec<Inside<'a>>,
     pub bodies: Vec<Inside<'a>>,
     pub inertial: Option<Item<'a>>,
-}
-
-/// Files may include each other, and so nest deeper than one file can.
-pub(crate) fn is_too_deep(element: &Element, depth: usize, cx: &mut Context) -> bool {
-    if depth > MOST_DEPTH {
-        let message = format!("more than {MOST_DEPTH} nested elements");
-        cx.findings.error("too_deep", element.span(), message);
-    }
-    depth > MOST_DEPTH
 }
 
 impl<'a> Model<'a> {

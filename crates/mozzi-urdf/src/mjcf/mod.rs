@@ -48,6 +48,7 @@ mod closure;
 mod compiler;
 mod contents;
 mod coordinates;
+mod depth;
 mod equality;
 pub(crate) mod explain;
 mod free;
@@ -164,7 +165,7 @@ fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut 
         }
     }
     let pages = Pages::new(pages, includes);
-    read_model(&pages.root("mujoco")?, wanted, cx)
+    read_model(&Element::root(&pages, "mujoco")?, wanted, cx)
 }
 
 fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> {

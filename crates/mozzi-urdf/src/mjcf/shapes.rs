@@ -15,8 +15,6 @@ use mozzi::{SE3, SO3, Solid, Vec3};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Attributes of a default class that only shapes use.
-pub(crate) const LOOKS: [&str; 2] = ["rgba", "material"];
 /// MuJoCo does not draw groups from this one on; by convention they contain the shapes for contacts.
 const FIRST_HIDDEN_GROUP: f64 = 3.0;
 

@@ -356,3 +356,6 @@ pub(crate) const ACTUATOR: Vocabulary = Vocabulary {
     ],
     ..NOTHING
 };
+
+/// Attributes of a default class that only shapes use.
+pub(crate) const LOOKS: [&str; 2] = ["rgba", "material"];

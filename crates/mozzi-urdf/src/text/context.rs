@@ -3,7 +3,7 @@
 use crate::report::finding::{Finding, Findings};
 use crate::report::spelling::nearest;
 use crate::text::dialect::Dialect;
-use crate::urdf::version::Version;
+use crate::text::version::Version;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 

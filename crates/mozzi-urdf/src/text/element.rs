@@ -34,8 +34,9 @@ pub(crate) struct Value<'a> {
 pub(crate) type Children<'a> = BTreeMap<&'static str, Element<'a>>;
 
 impl<'a> Element<'a> {
-    pub fn new(node: Node<'a, 'a>, pages: &'a Pages<'a>, page: usize, subject: String) -> Self {
-        Element { node, pages, page, subject }
+    /// The root of the first text.
+    pub fn root(pages: &'a Pages<'a>, subject: &str) -> Option<Self> {
+        Some(Element { node: pages.root()?, pages, page: 0, subject: subject.to_string() })
     }
 
     /// The same element with another name in messages.

@@ -11,4 +11,5 @@ pub(crate) mod pages;
 pub(crate) mod scan;
 pub(crate) mod source;
 pub(crate) mod syntax;
+pub(crate) mod version;
 pub(crate) mod xacro;

@@ -1,7 +1,6 @@
 //! The texts of a robot, parsed: one, or several if the first includes others. A place is a byte offset in all of them
 //! together; each text begins at its base.
 
-use crate::text::element::Element;
 use crate::text::source::Source;
 use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
@@ -26,9 +25,8 @@ impl<'a> Pages<'a> {
     }
 
     /// The root of the first text.
-    pub fn root(&'a self, subject: &str) -> Option<Element<'a>> {
-        let (_, document) = self.pages.first()?;
-        Some(Element::new(document.root_element(), self, 0, subject.to_string()))
+    pub fn root(&'a self) -> Option<Node<'a, 'a>> {
+        Some(self.pages.first()?.1.root_element())
     }
 
     pub fn source(&self, page: usize) -> &'a Source {

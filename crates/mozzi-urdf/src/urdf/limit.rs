@@ -14,7 +14,7 @@ use crate::report::finding::Finding;
 use crate::report::places::Place;
 use crate::text::context::Context;
 use crate::text::element::Element;
-use crate::urdf::version::Version;
+use crate::text::version::Version;
 use crate::urdf::vocabulary::LIMIT;
 use mozzi::model::description::Limits;
 

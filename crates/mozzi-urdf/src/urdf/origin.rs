@@ -3,7 +3,7 @@
 use crate::report::finding::Finding;
 use crate::text::context::Context;
 use crate::text::element::Element;
-use crate::urdf::version::Version;
+use crate::text::version::Version;
 use crate::urdf::vocabulary::{ORIGIN, shown};
 use mozzi::{SE3, SO3, Vec3};
 

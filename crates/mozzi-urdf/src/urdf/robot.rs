@@ -5,7 +5,7 @@ use crate::report::places::{Place, Places};
 use crate::report::spelling::did_you_mean;
 use crate::text::context::Context;
 use crate::text::element::Element;
-use crate::urdf::version::Version;
+use crate::urdf::version;
 use crate::urdf::vocabulary::{ROBOT, shown};
 use crate::urdf::{drake, floating, joint, link, series, transmission};
 use joint::Freedoms;
@@ -20,7 +20,7 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
         return None;
     }
     root.check_attributes(&ROBOT, cx);
-    cx.version = Version::read(root, cx);
+    cx.version = version::read(root, cx);
     let mut places = Places { robot: Place::new(root.span()), ..Places::default() };
     let name = root.required_name("name", cx);
     let mut description = Description::new(places.robot.note("name", name));

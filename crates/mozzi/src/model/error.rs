@@ -1,6 +1,6 @@
 //! Errors, with the numbers that caused them.
 
-use super::check::{Problem, Severity};
+use super::problem::{Problem, Severity};
 use crate::spelling::nearest;
 use alloc::format;
 use alloc::string::String;

@@ -1,6 +1,6 @@
 //! `f64` and `f32` as scalars; elementary functions from `std`, or from `libm` without it.
 
-use super::{Float, Fused, Real, Scalar, sin_cos};
+use super::{Float, Real, Scalar, sin_cos};
 
 #[cfg(feature = "std")]
 mod elementary {
@@ -62,13 +62,4 @@ macro_rules! float {
 }
 float!(f64, f32);
 
-/// Sine and cosine with fused multiply-add; exact reduction for arguments beyond the polynomial's range.
-#[inline(always)]
-pub(super) fn sin_cos_fused(x: Fused) -> (Fused, Fused) {
-    if x.0.abs() <= f64::LARGEST {
-        return sin_cos(x);
-    }
-    let (s, c) = elementary::f64::sin_cos(x.0);
-    (Fused(s), Fused(c))
-}
-pub(super) use elementary::f64::{sqrt, tanh};
+pub(super) use elementary::f64::{sin_cos as sin_cos_of_any, sqrt, tanh};

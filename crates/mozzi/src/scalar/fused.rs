@@ -1,7 +1,7 @@
 //! `f64` whose `mul_add` is one machine instruction.
 
-use super::lanes::FusedLanes;
-use super::{Scalar, assign_ops, float};
+use super::fused_lanes::FusedLanes;
+use super::{Bits, Float, Scalar, assign_ops, float, sin_cos};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An `f64` with fused multiply-add, for entries compiled with `#[target_feature(enable = "fma")]` alone (see
@@ -66,7 +66,7 @@ impl Scalar for Fused {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        float::sin_cos_fused(self)
+        sin_cos_fused(self)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -82,5 +82,38 @@ impl Scalar for Fused {
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         Fused(mul_add(self.0, a.0, b.0))
+    }
+}
+
+/// Sine and cosine with fused multiply-add; exact reduction for arguments beyond the polynomial's range.
+#[inline(always)]
+fn sin_cos_fused(x: Fused) -> (Fused, Fused) {
+    if x.0.abs() <= f64::LARGEST {
+        return sin_cos(x);
+    }
+    let (s, c) = float::sin_cos_of_any(x.0);
+    (Fused(s), Fused(c))
+}
+impl Bits for Fused {
+    type Number = f64;
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Fused(x)
+    }
+    #[inline(always)]
+    fn xor(self, other: Self) -> Self {
+        Fused(self.0.xor(other.0))
+    }
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Fused(self.0.and(other.0))
+    }
+    #[inline(always)]
+    fn lowest_everywhere(self) -> Self {
+        Fused(self.0.lowest_everywhere())
+    }
+    #[inline(always)]
+    fn second_lowest_as_sign(self) -> Self {
+        Fused(self.0.second_lowest_as_sign())
     }
 }

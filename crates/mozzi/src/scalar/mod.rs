@@ -3,6 +3,7 @@
 mod dual;
 mod float;
 mod fused;
+mod fused_lanes;
 mod lanes;
 mod pass;
 #[cfg(test)]

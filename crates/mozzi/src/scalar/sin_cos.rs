@@ -5,7 +5,7 @@
 //! tests bound the error: 1 ulp in `f64` up to |x| = 10⁶; 1.5 ulp in `f32` up to 8192, where errors of values below
 //! 10⁻³ (close to a zero of the function) are measured in ulps of 10⁻³.
 
-use super::{Fused, Scalar};
+use super::Scalar;
 
 /// `f64` or `f32`, with the numbers of its [`sin_cos`].
 pub trait Float: super::Real + Send + Sync + 'static {
@@ -116,27 +116,21 @@ impl Float for f32 {
 }
 
 macro_rules! bits {
-    ($($S:ty: $f:ident, $wrap:expr, $number:expr;)*) => { $(impl Bits for $S {
+    ($($f:ident),*) => { $(impl Bits for $f {
         type Number = $f;
         #[inline(always)]
-        fn constant(x: $f) -> Self { $wrap(x) }
+        fn constant(x: $f) -> Self { x }
         #[inline(always)]
-        fn xor(self, other: Self) -> Self { $wrap($f::from_bits($number(self).to_bits() ^ $number(other).to_bits())) }
+        fn xor(self, other: Self) -> Self { $f::from_bits(self.to_bits() ^ other.to_bits()) }
         #[inline(always)]
-        fn and(self, other: Self) -> Self { $wrap($f::from_bits($number(self).to_bits() & $number(other).to_bits())) }
+        fn and(self, other: Self) -> Self { $f::from_bits(self.to_bits() & other.to_bits()) }
         #[inline(always)]
-        fn lowest_everywhere(self) -> Self { $wrap($f::from_bits(($number(self).to_bits() & 1).wrapping_neg())) }
+        fn lowest_everywhere(self) -> Self { $f::from_bits((self.to_bits() & 1).wrapping_neg()) }
         #[inline(always)]
-        fn second_lowest_as_sign(self) -> Self {
-            $wrap($f::from_bits(($number(self).to_bits() & 2) << (8 * size_of::<$f>() - 2)))
-        }
+        fn second_lowest_as_sign(self) -> Self { $f::from_bits((self.to_bits() & 2) << (8 * size_of::<$f>() - 2)) }
     })* };
 }
-bits! {
-    f64: f64, |x: f64| x, |x: f64| x;
-    f32: f32, |x: f32| x, |x: f32| x;
-    Fused: f64, Fused, |x: Fused| x.0;
-}
+bits!(f64, f32);
 
 #[cfg(test)]
 mod tests {

@@ -2,10 +2,9 @@
 
 use super::noise::cleaned;
 use super::subject;
-use crate::commands::terms::text::with_rows_named;
 use crate::json;
 use crate::robot::Units;
-use crate::table::{Quantity, quantities};
+use crate::table::{Quantity, quantities, with_rows_named};
 use crate::text::{Page, beside, flow, matrix, scalar, tuple};
 use mozzi::quantities::{Dim, INPUTS, Of, Output, Query, Uses};
 use mozzi::{Environment, Model};

@@ -3,7 +3,8 @@
 use super::join::join;
 use super::joint_states::{self, is_bag};
 use crate::failure::{Failure, Result};
-use crate::recogniser::{Force, IS_CURRENT, Request, Row};
+use crate::recogniser::{Force, IS_CURRENT, Request};
+use crate::tables::samples::Row;
 use crate::tables::samples::Samples;
 use crate::tables::{How, read};
 use mozzi::{FrameId, Model};

@@ -1,6 +1,6 @@
 //! The result as text.
 
-use crate::recogniser::Row;
+use crate::tables::samples::Row;
 use crate::text::{Page, table};
 use mozzi::Model;
 use mozzi_identify::judgement::Judgement;

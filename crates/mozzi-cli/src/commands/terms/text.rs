@@ -5,7 +5,7 @@ use super::values::Terms;
 use crate::numbers::{TWIST, WRENCH};
 use crate::quantity::is_of_a_frame;
 use crate::robot::{Units, space_frame};
-use crate::table::{Quantity, quantities, short};
+use crate::table::{Quantity, quantities, short, with_rows_named};
 use crate::text::{Page, Sections, beside, flow, matrix, scalar, sixes, table, tuple};
 use mozzi::quantities::{
     BiasForces, BodyJacobian, BodyJacobianRate, CoriolisMatrix, ForwardDynamics, ForwardDynamicsDerivatives,
@@ -92,16 +92,6 @@ pub fn blocks(terms: &Terms, list: &[(&str, Query, usize)]) -> Vec<String> {
         Some((title.to_string(), if is_of_twists { with_rows_named(lines) } else { lines }))
     };
     beside(&list.iter().filter_map(block).collect::<Vec<_>>())
-}
-
-/// A Jacobian's lines.
-pub fn with_rows_named(lines: Vec<String>) -> Vec<String> {
-    let mut names = TWIST.iter().cycle();
-    let named = |line: String| match line.starts_with("columns") {
-        true => line,
-        false => format!("{} {line}", names.next().unwrap_or(&"")),
-    };
-    lines.into_iter().map(named).collect()
 }
 
 fn velocity(V: Option<DVector<f64>>) -> String {
