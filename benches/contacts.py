@@ -1,9 +1,13 @@
 """Milliseconds of a step with contacts: mozzi's program beside MuJoCo's mj_step, on the same models, steps of 1 ms.
 
-Usage: contacts.py MOZZI, with mujoco, gymnasium and dm_control installed. A model falls from its start, motors off, and
-lies: the first second is the fall, the third is lying. mozzi's time is that of whole runs, less that of shorter ones.
+Usage: contacts.py MOZZI, with mujoco, gymnasium, dm_control and example-robot-data installed. A model falls from its
+start, a URDF's robot from a height at which nothing touches, motors off, and lies: the first second is the fall, the
+third is lying. mozzi's time is that of whole runs, less that of shorter ones.
 """
 
+import json
+import os
+import re
 import subprocess
 import sys
 import time
@@ -21,14 +25,56 @@ def models():
     assets = Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets"
     found = {f"gymnasium {name}": assets / f"{name}.xml" for name in ("humanoid", "ant")}
     found |= {f"dm_control {name}": suite / f"{name}.xml" for name in ("humanoid", "quadruped", "dog")}
+    robots = os.environ.get("MOZZI_ROBOTS")
+    if robots:
+        found |= {name: Path(robots) / file for name, (file, _) in URDFS.items()}
+    else:
+        print("MOZZI_ROBOTS is not set: no URDF is run", file=sys.stderr)
     return found
+
+
+# of example-robot-data, with the height of the base at the start, m
+URDFS = {
+    "ANYmal": ("anymal_b_simple_description/robots/anymal.urdf", 0.8),
+    "Go2": ("go2_description/urdf/go2.urdf", 0.6),
+    "G1, meshes": ("g1_description/urdf/g1_29dof_rev_1_0.urdf", 1.0),
+    "Talos, meshes": ("talos_data/robots/talos_reduced.urdf", 1.3),
+}
+
+
+def height(path):
+    return next((height for file, height in URDFS.values() if path.as_posix().endswith(file)), None)
+
+
+def of_urdf(path):
+    """A URDF in MuJoCo, with a free base and a floor; what is drawn only is left out."""
+    text = re.sub(r"<visual.*?</visual>", "", path.read_text(), flags=re.DOTALL)
+    root = Path(os.environ["MOZZI_ROBOTS"])
+    assets = {}
+
+    def asset(found):
+        name = f"{len(assets)}{Path(found[1]).suffix.lower()}"
+        packages = [folder / found[1] for folder in (root, root.parent.parent)]
+        assets[name] = next(package for package in packages if package.exists()).read_bytes()
+        return f'filename="{name}"'
+
+    text = re.sub(r'filename="package://([^"]*)"', asset, text)
+    spec = mujoco.MjSpec.from_string(text, assets=assets)
+    # links without a mass of their own
+    spec.compiler.boundmass, spec.compiler.boundinertia, spec.compiler.balanceinertia = 1e-9, 1e-9, True
+    spec.worldbody.first_body().add_freejoint()
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1])
+    return spec.compile()
 
 
 def by_mujoco(path):
     """Seconds of mj_step in the first and in the third second of the motion."""
-    model = mujoco.MjModel.from_xml_path(str(path))
+    start = height(path)
+    model = mujoco.MjModel.from_xml_path(str(path)) if start is None else of_urdf(path)
     model.opt.timestep = 1e-3
     data = mujoco.MjData(model)
+    if start is not None:
+        data.qpos[2] = start
     seconds = []
     for _ in range(3):
         start = time.process_time()
@@ -41,8 +87,14 @@ def by_mujoco(path):
 def by_mozzi(program, path):
     """The same, as differences of whole runs; with the largest residual."""
 
+    flags = []
+    if height(path) is not None:
+        found = subprocess.run([program, "info", str(path), "--floating", "--json"], capture_output=True, text=True)
+        nq = json.loads(found.stdout)["nq"]
+        flags = ["--floating", "--theta", ",".join(map(str, [1, 0, 0, 0, 0, 0, height(path)] + [0] * (nq - 7)))]
+
     def run(duration):
-        command = [program, "simulate", str(path), "--ground", "--method", "moreau", "--step", "0.001", "--time", str(duration)]
+        command = [program, "simulate", str(path), "--ground", "--method", "moreau", "--step", "0.001", "--time", str(duration), *flags]
         best = float("inf")
         for _ in range(REPEATS):
             start = time.perf_counter()

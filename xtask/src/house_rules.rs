@@ -1,9 +1,12 @@
-//! The project's own rules for `crates/*/src`, tests left out: no unwrap, nothing unfinished, unsafe in known places.
+//! The project's own rules for `crates/*/src`, tests left out: no unwrap, nothing unfinished, unsafe in known places,
+//! no circle of more than two files.
 
+use crate::circles::circles;
 use crate::module_order::above;
 use crate::report::Outcome;
 use crate::source_text::{code_only, without_tests};
 use crate::workspace::Workspace;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, CUDA's libraries, NumPy's
@@ -35,6 +38,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
     rust_files(&workspace.path("xtask/book/src"), &mut files);
     files.sort();
     let (mut broken, mut long) = (0, 0);
+    let mut crates: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     for file in &files {
         let name = file.strip_prefix(&workspace.root).unwrap_or(file).to_string_lossy().replace('\\', "/");
         let Ok(source) = std::fs::read_to_string(file) else {
@@ -51,8 +55,17 @@ pub fn check(workspace: &Workspace) -> Outcome {
         if !is_library_code(&name) {
             continue;
         }
-        for (line, rule) in broken_rules(&name, &source) {
+        let code = without_tests(&code_only(&source));
+        for (line, rule) in broken_rules(&name, &code) {
             println!("{name}:{line}: {rule}");
+            broken += 1;
+        }
+        let folder: String = name.split_inclusive('/').take(3).collect();
+        crates.entry(folder.trim_end_matches('/').to_string()).or_default().insert(name, code);
+    }
+    for (source, files) in &crates {
+        for circle in circles(source, files) {
+            println!("{source}: a circle of {} files: {}", circle.len(), circle.join(", "));
             broken += 1;
         }
     }
@@ -80,8 +93,7 @@ fn is_library_code(name: &str) -> bool {
 }
 
 /// The line and the rule of each violation.
-fn broken_rules(name: &str, source: &str) -> Vec<(usize, String)> {
-    let code = without_tests(&code_only(source));
+fn broken_rules(name: &str, code: &str) -> Vec<(usize, String)> {
     let unsafe_allowed = UNSAFE_ALLOWED.iter().any(|start| name.starts_with(start));
     let mut broken = Vec::new();
     for (index, line) in code.lines().enumerate() {
@@ -125,7 +137,11 @@ fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
 
 #[cfg(test)]
 mod tests {
-    use super::{broken_rules, is_library_code, long_comments};
+    use super::{broken_rules, code_only, is_library_code, long_comments, without_tests};
+
+    fn of(name: &str, source: &str) -> Vec<(usize, String)> {
+        broken_rules(name, &without_tests(&code_only(source)))
+    }
 
     #[test]
     fn long_comments_are_found_and_long_texts_are_not() {
@@ -137,22 +153,22 @@ mod tests {
     #[test]
     fn each_rule_finds_its_line() {
         let source = "let a = b.unwrap();\ntodo!();\nunimplemented!(\"x\");\nunsafe { c() }\n";
-        let lines: Vec<_> = broken_rules("crates/mozzi/src/a.rs", source).iter().map(|(line, _)| *line).collect();
+        let lines: Vec<_> = of("crates/mozzi/src/a.rs", source).iter().map(|(line, _)| *line).collect();
         assert_eq!(lines, [1, 2, 3, 4]);
     }
 
     #[test]
     fn comments_tests_and_longer_names_break_nothing() {
         let source = "//! b.unwrap()\n#![deny(unsafe_op_in_unsafe_fn)]\na.unwrap_or(1);\n#[cfg(test)]\nmod tests { fn f() { b.unwrap(); } }";
-        assert_eq!(broken_rules("crates/mozzi/src/a.rs", source), []);
+        assert_eq!(of("crates/mozzi/src/a.rs", source), []);
     }
 
     #[test]
     fn unsafe_has_its_places() {
         let source = "unsafe { c() }";
-        assert_eq!(broken_rules("crates/mozzi/src/fast.rs", source), []);
-        assert_eq!(broken_rules("crates/mozzi/src/fast/x86.rs", source), []);
-        assert_eq!(broken_rules("crates/mozzi-urdf/src/lib.rs", source).len(), 1);
+        assert_eq!(of("crates/mozzi/src/fast.rs", source), []);
+        assert_eq!(of("crates/mozzi/src/fast/x86.rs", source), []);
+        assert_eq!(of("crates/mozzi-urdf/src/lib.rs", source).len(), 1);
     }
 
     #[test]

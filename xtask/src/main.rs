@@ -8,6 +8,7 @@ mod accuracy;
 mod advisories;
 mod bench;
 mod book;
+mod circles;
 mod command;
 mod cpu;
 mod cross;

@@ -36,16 +36,9 @@ const LONG_STEP: f64 = 1e-3;
 /// Refuses a robot whose matrices n × n are too large, and announces one whose factorizations, or constraints, take
 /// long.
 pub fn matrices(model: &Model) -> Result<()> {
+    square("velocities", model.n())?;
     let n = model.n() as f64;
-    let (bytes, seconds) = (BINARY * n * n, n * n * n / 6.0 / RATE);
-    if bytes > MATRIX {
-        let most = (MATRIX / BINARY).sqrt();
-        return Err(Failure::wrong(format!(
-            "the robot has {n} velocities, and a matrix n × n takes {}; expected at most {most:.0} velocities, {}",
-            size(bytes),
-            size(MATRIX)
-        )));
-    }
+    let seconds = n * n * n / 6.0 / RATE;
     if seconds > 1.0 {
         failure::note(&format!("the robot has {n} velocities: a factorization of M takes about {seconds:.0} s"));
     }
@@ -53,6 +46,20 @@ pub fn matrices(model: &Model) -> Result<()> {
     let seconds = rows * rows * (rows + n) / RATE;
     if seconds > LONG_STEP {
         failure::note(&format!("the robot has {rows} rows of constraints: a step takes about {seconds:.1e} s"));
+    }
+    Ok(())
+}
+
+/// Refuses a square matrix of so many velocities, or parameters, that is too large.
+pub fn square(what: &str, n: usize) -> Result<()> {
+    let bytes = BINARY * n as f64 * n as f64;
+    if bytes > MATRIX {
+        let most = (MATRIX / BINARY).sqrt();
+        return Err(Failure::wrong(format!(
+            "the robot has {n} {what}, and a matrix n × n takes {}; expected at most {most:.0} {what}, {}",
+            size(bytes),
+            size(MATRIX)
+        )));
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 """Machine code, beside the kernels."""
 
+import concurrent.futures
 import copy
 import multiprocessing
 import pickle
@@ -160,3 +161,39 @@ def test_a_fork_while_another_thread_makes_code():
             child.join(60)
             assert child.exitcode == 0
         maker.join()
+
+
+def random_calls(model, table, expected, count, seed):
+    """The largest relative difference from the kernels of calls with parts of a table."""
+    random, worst = np.random.default_rng(seed), 0.0
+    for _ in range(count):
+        states = int(random.integers(1, 40))
+        start = int(random.integers(0, len(table[0]) - states))
+        found = model.inverse_dynamics(*(x[start : start + states] for x in table))
+        worst = max(worst, np.abs(found - expected[start : start + states]).max() / np.abs(expected).max())
+    return worst
+
+
+def in_threads(model, table, expected, seed, queue=None):
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        parts = [pool.submit(random_calls, model, table, expected, 250, [seed, k]) for k in range(8)]
+        worst = max(part.result(120) for part in parts)
+    return worst if queue is None else queue.put(worst)
+
+
+def test_forks_whose_threads_make_code_together(ur5, random):
+    table = state(ur5, random, 1000)
+    expected = ur5.kernels_only().inverse_dynamics(*table)
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    for round in range(2):
+        model = mozzi.models.ur5()  # without code: parent and children make it at once
+        children = [context.Process(target=in_threads, args=(model, table, expected, 10 * round + k, queue)) for k in range(4)]
+        for child in children:
+            child.start()
+        assert in_threads(model, table, expected, 100 + round) < 1e-13
+        for child in children:
+            assert queue.get(timeout=120) < 1e-13
+        for child in children:
+            child.join(60)
+            assert child.exitcode == 0

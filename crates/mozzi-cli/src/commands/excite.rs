@@ -8,7 +8,7 @@ use crate::numbers::{self, array, number, one_or_each};
 use crate::robot::FileArguments;
 use crate::tables::format::Format;
 use crate::text::{Page, table};
-use crate::{interrupt, json};
+use crate::{interrupt, json, workload};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_identify::excite::{Box3, Excitation, ExciteOptions, Goal, Sphere, excite};
@@ -93,6 +93,7 @@ pub fn run(arguments: &ExciteArguments) -> Result<String> {
     let whole = arguments.robot.load()?;
     let locks = edits::locks(&arguments.lock, &whole)?;
     let model = if locks.is_empty() { whole } else { whole.with_locked_joints(&locks)? };
+    workload::square("parameters", model.parameter_count())?;
     let options = arguments.options(&model)?;
     for (name, [low, high]) in model.joint_names().zip(&options.limits.position) {
         if low >= high {

@@ -180,6 +180,7 @@ impl SimulateArguments {
     }
 
     fn simulate(&self, model: &Model) -> Result<Outcome> {
+        workload::matrices(model)?;
         let followed = self.motors.followed(model)?;
         let (mut theta, mut dtheta) = self.start.read(model)?;
         if let (None, None, Some(Followed { start, .. })) = (&self.start.state, &self.start.theta, &followed) {
@@ -218,7 +219,6 @@ impl SimulateArguments {
         let input = ((&mut motors, actuated), self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
         self.workload(model, end)?.check(self.allow_large)?;
-        workload::matrices(model)?;
         let options = self.options(end, limits)?;
         let is_led = followed.is_some() || controller.is_some();
         let mut tracking = is_led.then(|| Tracking::new(model, &reference));

@@ -14,8 +14,28 @@ pub struct DeviceArray<T> {
     number: PhantomData<T>,
 }
 
+impl Device {
+    /// Memory for this many numbers, all 0.
+    ///
+    /// # Errors
+    /// [`Error::Driver`] if there is not enough.
+    pub fn zeros<T: Number>(&self, length: usize) -> Result<DeviceArray<T>, Error> {
+        DeviceArray::zeros(self, length)
+    }
+
+    /// A copy of these numbers.
+    ///
+    /// # Errors
+    /// See [`zeros`](Self::zeros).
+    pub fn copy<T: Number>(&self, numbers: &[T]) -> Result<DeviceArray<T>, Error> {
+        let mut array = self.zeros(numbers.len())?;
+        array.write(numbers)?;
+        Ok(array)
+    }
+}
+
 impl<T: Number> DeviceArray<T> {
-    pub(super) fn zeros(device: &Device, length: usize) -> Result<Self, Error> {
+    fn zeros(device: &Device, length: usize) -> Result<Self, Error> {
         device.bind()?;
         let bytes = length * size_of::<T>();
         // an empty array has a pointer, too

@@ -1,7 +1,7 @@
 //! Devices.
 
-use super::{DeviceArray, Kernel, failed, reason};
-use crate::{Arch, Binary, Error, Number, Nvrtc, Source};
+use super::{failed, reason};
+use crate::{Arch, Error};
 use cudarc::driver::CudaContext;
 use cudarc::driver::sys::CUdevice_attribute_enum as Attribute;
 use libloading::Library;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Device {
     pub(super) context: Arc<CudaContext>,
-    arch: Arch,
+    pub(super) arch: Arch,
     name: String,
 }
 
@@ -86,41 +86,6 @@ impl Device {
     fn attribute(&self, attribute: Attribute) -> Result<usize, Error> {
         let value = self.context.attribute(attribute).map_err(failed("cuDeviceGetAttribute"))?;
         Ok(usize::try_from(value).unwrap_or(0))
-    }
-
-    /// Compiles a text by [`Nvrtc::find`] for this device, and loads it. Loading again costs a millisecond, not a
-    /// compilation.
-    ///
-    /// # Errors
-    /// [`Error::NoCompiler`], [`Error::Compile`], [`Error::Driver`].
-    pub fn kernel(&self, source: &Source) -> Result<Kernel, Error> {
-        self.load(source, &*source.compile(&Nvrtc::find()?, self.arch)?)
-    }
-
-    /// Loads a text's code.
-    ///
-    /// # Errors
-    /// [`Error::Driver`], for example if the code is for another architecture.
-    pub fn load(&self, source: &Source, binary: &Binary) -> Result<Kernel, Error> {
-        Kernel::load(self, source, binary)
-    }
-
-    /// Memory for this many numbers, all 0.
-    ///
-    /// # Errors
-    /// [`Error::Driver`] if there is not enough.
-    pub fn zeros<T: Number>(&self, length: usize) -> Result<DeviceArray<T>, Error> {
-        DeviceArray::zeros(self, length)
-    }
-
-    /// A copy of these numbers.
-    ///
-    /// # Errors
-    /// See [`zeros`](Self::zeros).
-    pub fn copy<T: Number>(&self, numbers: &[T]) -> Result<DeviceArray<T>, Error> {
-        let mut array = self.zeros(numbers.len())?;
-        array.write(numbers)?;
-        Ok(array)
     }
 
     /// Waits until all work on the device has ended.

@@ -1,7 +1,7 @@
 //! A loaded kernel, and its calls.
 
 use super::{Device, DeviceArray, failed};
-use crate::{Binary, Error, Number, Source};
+use crate::{Binary, Error, Number, Nvrtc, Source};
 use cudarc::driver::result;
 use cudarc::driver::sys;
 use mozzi_engine::CudaLayout;
@@ -42,8 +42,27 @@ impl Drop for Module {
     }
 }
 
+impl Device {
+    /// Compiles a text by [`Nvrtc::find`] for this device, and loads it. Loading again costs a millisecond, not a
+    /// compilation.
+    ///
+    /// # Errors
+    /// [`Error::NoCompiler`], [`Error::Compile`], [`Error::Driver`].
+    pub fn kernel(&self, source: &Source) -> Result<Kernel, Error> {
+        self.load(source, &*source.compile(&Nvrtc::find()?, self.arch)?)
+    }
+
+    /// Loads a text's code.
+    ///
+    /// # Errors
+    /// [`Error::Driver`], for example if the code is for another architecture.
+    pub fn load(&self, source: &Source, binary: &Binary) -> Result<Kernel, Error> {
+        Kernel::load(self, source, binary)
+    }
+}
+
 impl Kernel {
-    pub(super) fn load(device: &Device, source: &Source, binary: &Binary) -> Result<Kernel, Error> {
+    fn load(device: &Device, source: &Source, binary: &Binary) -> Result<Kernel, Error> {
         device.bind()?;
         let name = CString::new(binary.entry()).unwrap_or_default(); // an identifier of C has no 0
         // SAFETY: a CUBIN of NVRTC, whose header has its length

@@ -1,7 +1,7 @@
 //! SE(3): rigid motions and configurations of frames.
 
 use super::Twist;
-use super::{Adjoint, InvalidRotation, SO3};
+use super::{InvalidRotation, SO3};
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::{Real, Scalar};
 use core::ops::Mul;
@@ -45,12 +45,6 @@ impl<S: Scalar> SE3<S> {
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_pose([w, x, y, z, px, py, pz]: [S; 7]) -> Self {
         SE3 { R: SO3::from_quaternion(w, Vec3([x, y, z])), p: Vec3([px, py, pz]) }
-    }
-
-    /// `[Ad_T]`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn Ad(self) -> Adjoint<S> {
-        Adjoint(self)
     }
 
     /// The 4 × 4 matrix, as rows.

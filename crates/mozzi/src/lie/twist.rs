@@ -1,6 +1,6 @@
 //! Twists: elements of se(3).
 
-use super::{LieBracket, Wrench};
+use super::Wrench;
 use crate::linalg::{Mat3, Vec3, linear_space};
 use crate::scalar::Scalar;
 
@@ -51,12 +51,6 @@ impl<S: Scalar> Twist<S> {
     /// From (v, ω), **linear first**.
     pub fn from_linear_first([x, y, z, a, b, c]: [S; 6]) -> Self {
         Twist { w: Vec3([a, b, c]), v: Vec3([x, y, z]) }
-    }
-
-    /// `[ad_V]`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn ad(self) -> LieBracket<S> {
-        LieBracket(self)
     }
 
     /// The power ωᵀm + vᵀf, in watts.

@@ -10,6 +10,7 @@ use crate::interrupt;
 use crate::progress::Progress;
 use crate::quantity::{hyphenated, is_of_a_frame, quantity};
 use crate::robot::{RobotArguments, end_effector};
+use crate::workload;
 use clap::Args;
 use mozzi::quantities::{Declaration, LIST, Of, Query, Uses};
 use mozzi_engine::Batch;
@@ -57,6 +58,7 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     if model.n() == 0 {
         return Err(Failure::wrong(format!("`{}` has no joint that moves: nothing to time", model.description().name)));
     }
+    workload::matrices(&model)?;
     let is_empty = |quantity: &Declaration| quantity.is_constrained && model.constraint_rows() == 0;
     // the random states have no other numbers
     let has_inputs =

@@ -14,6 +14,7 @@ use mozzi::model::State;
 use mozzi::model::description::{Anchor, Constraint, ConstraintKind, Gear, Joint, Rotor};
 use mozzi::{ConstraintRank, Description, Error, FrameId, Model, SE3, SpatialInertia};
 use mozzi::{Freedom, Place};
+use std::collections::BTreeSet;
 
 #[derive(Args, Debug)]
 pub struct InfoArguments {
@@ -84,7 +85,8 @@ pub fn surroundings(model: &Model) -> String {
 /// " (`ee_link` has the same origin)", if the end effector was chosen among leaves in one place.
 fn coinciding(model: &Model, chosen: FrameId) -> String {
     let robot = model.description();
-    let is_leaf = |name: &str| !robot.joints.iter().any(|joint| joint.parent == name);
+    let parents: BTreeSet<&str> = robot.joints.iter().map(|joint| joint.parent.as_str()).collect();
+    let is_leaf = |name: &str| !parents.contains(name);
     let zero = model.neutral_configuration::<f64>();
     let Ok(at) = model.forward_kinematics(&zero, chosen) else { return String::new() };
     let is_there = |frame: FrameId| {
@@ -149,10 +151,6 @@ fn base(model: &Model) -> Vec<String> {
 /// The entries that balls and free joints add to the state.
 fn several(model: &Model) -> Vec<String> {
     let of_joint = |(joint, place): (&Joint, &Place)| {
-        let list = |names: Vec<&str>| names.join(" ");
-        let (q, j) = (place.positions(), place.velocities());
-        let positions = list(model.position_names().skip(q.start).take(q.len()).collect());
-        let velocities = list(model.velocity_names().skip(j.start).take(j.len()).collect());
         let says = match place.freedom {
             Freedom::One => return None,
             Freedom::Ball => {
@@ -160,6 +158,10 @@ fn several(model: &Model) -> Vec<String> {
             }
             Freedom::Free => "pose relative to its link's pose at 0; twist (ω, v) in its link's coordinates",
         };
+        let list = |names: Vec<&str>| names.join(" ");
+        let (q, j) = (place.positions(), place.velocities());
+        let positions = list(model.position_names().skip(q.start).take(q.len()).collect());
+        let velocities = list(model.velocity_names().skip(j.start).take(j.len()).collect());
         Some(format!("{}: θ has {positions}, θ̇ has {velocities}: {says}", joint.name))
     };
     model.joints().zip(model.places()).filter_map(of_joint).collect()

@@ -12,6 +12,7 @@ use crate::robot::{RobotArguments, screen};
 use crate::state::{Motion, MotionArguments, environment};
 use crate::task::TaskArguments;
 use crate::text::Page;
+use crate::workload;
 use clap::Args;
 use mozzi::quantities::Query;
 use serde_json::Value;
@@ -41,6 +42,7 @@ pub struct TermsArguments {
 
 pub fn run(arguments: &TermsArguments) -> Result<String> {
     let model = arguments.robot.load_at(|model| Ok(arguments.motion.start(model)?.0))?;
+    workload::matrices(&model)?;
     let Motion { state, applied } = arguments.motion.read(&model)?;
     let environment = environment(&model, &applied);
     let mut terms = Terms::at(&model, state, &environment)?;
