@@ -20,6 +20,9 @@ pub(crate) struct Grouping<'a> {
 /// With more terms, only one atom after another is factored out.
 const MANY: usize = 48;
 
+/// How many times one group is split again.
+const DEPTH: usize = 4;
+
 /// The ways to split each monomial into a factor to be put outside, and a rest.
 #[derive(Clone, Copy)]
 enum Split {
@@ -60,7 +63,7 @@ impl Grouping<'_> {
             [(monomial, x)] => self.monomial(monomial, x),
             _ if terms.len() > MANY => self.by_frequent_atom(terms),
             _ => {
-                let plain = self.search(terms, 4);
+                let plain = self.search(terms, DEPTH);
                 // halves outside: ½(a + b)
                 let denominator = |(_, x): &Term| match x {
                     Rational::Small(a, b) if a.abs() < 100 && *b <= 8 => Some(*b),
@@ -70,7 +73,7 @@ impl Grouping<'_> {
                 let Some(common) = common.filter(|common| *common > 1) else { return plain };
                 let by = Rational::new(common, 1);
                 let whole: Vec<Term> = terms.iter().map(|(m, x)| (m.clone(), x * &by)).collect();
-                let outside = times(by.inverse(), self.search(&whole, 4));
+                let outside = times(by.inverse(), self.search(&whole, DEPTH));
                 if outside.cost() < plain.cost() { outside } else { plain }
             }
         }
@@ -96,7 +99,9 @@ impl Grouping<'_> {
         if depth == 0 || terms.is_empty() {
             return best;
         }
-        let splits = SPLITS.iter().filter_map(|&split| self.grouped(terms, split, depth - 1));
+        // gravity is put outside of a coefficient of a sine, not of all sines, as in books
+        let gravity = (depth < DEPTH).then_some(Split::Only(Class::Gravity));
+        let splits = SPLITS.into_iter().chain(gravity).filter_map(|split| self.grouped(terms, split, depth - 1));
         for candidate in splits.chain([self.by_frequent_atom(terms)]) {
             let candidate_cost = candidate.cost();
             if candidate_cost < cost {

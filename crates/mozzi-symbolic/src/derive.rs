@@ -56,6 +56,8 @@ pub enum Error {
         /// What its kernel does.
         what: String,
     },
+    /// The robot has no recursion in the book's form.
+    NoRecursion(String),
     /// The expressions would be too long.
     TooLong {
         /// The quantity.
@@ -87,6 +89,11 @@ impl fmt::Display for Error {
                      without an inverse, such as mass-matrix, velocity-product, gravity-forces and inverse-dynamics"
                 )
             }
+            Error::NoRecursion(what) => write!(
+                f,
+                "the recursion is printed for joints that slide, or turn about an axis of their link, on a fixed base; \
+                 the robot has {what}"
+            ),
             Error::TooLong { quantity, terms } => {
                 let quantity = quantity.replace('_', "-");
                 write!(

@@ -93,8 +93,7 @@ fn links(model: &Model, robot: &Description<Symbol>, theta: &[Symbol]) -> Result
         let q = ratio * theta[model.places()[source.joint].q] + offset;
         let (parent, T) = carried[&joint.parent];
         let Some(moved) = exponential(A.twist(), q) else {
-            let what = format!("has the joint `{}`, whose axis is along none of its link's axes", joint.name);
-            return Err(Error::NotPolynomial { quantity: "newton_euler", what });
+            return Err(Error::NoRecursion(format!("`{}`, whose axis is along none of its link's", joint.name)));
         };
         let in_parent = center(parent).inverse() * T * joint.origin * moved * center(i + 1);
         found.push(Link {
@@ -129,12 +128,15 @@ impl Writer {
 /// The recursion of a robot, link by link, and the blocks of 𝒜, 𝒢, 𝒲 and ℒ.
 ///
 /// # Errors
-/// [`Error::NotPolynomial`] for a floating base, balls and free joints, which have no single screw axis;
+/// [`Error::NoRecursion`] for a floating base, balls, free joints, and axes along none of their link's;
 /// [`Error::NotProven`] if the torques differ from the kernel's.
 pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Steps, Error> {
     let quantity = "newton_euler";
-    if model.is_floating() || model.places().iter().any(|place| place.freedom != Freedom::One) {
-        return Err(Error::NotPolynomial { quantity, what: "is of joints with one axis on a fixed base".into() });
+    if model.is_floating() {
+        return Err(Error::NoRecursion("a floating base".into()));
+    }
+    if let Some((joint, _)) = model.joints().zip(model.places()).find(|(_, place)| place.freedom != Freedom::One) {
+        return Err(Error::NoRecursion(format!("`{}`, a {} joint", joint.name, joint.kind.name())));
     }
     let (mut robot, parameters) = described(model, text, options)?;
     // friction, springs and rotors are no part of the recursion

@@ -1,42 +1,36 @@
-//! Derivations of embedded and written robots.
+//! Derivations: the book's equations letter by letter, SymPy's own Lagrangian derivation, one text for one robot.
 
-use mozzi::quantities::Query;
-use mozzi_symbolic::{Derivation, Equal, Language, Options, Symbols, derive};
+mod book;
+mod canonical;
+mod lagrange;
+mod printed;
+mod robots;
 
-fn of(robot: &str, quantity: &str, options: &Options) -> Derivation {
-    let text = mozzi_urdf::embedded::text(robot).expect(robot);
-    let model = mozzi_urdf::parse("robot.urdf", text).expect("sound").description.build().expect("sound");
-    let query = Query::named(quantity).expect(quantity);
-    let query = match mozzi_urdf_frame(&query) {
-        true => query.of(model.end_effector().expect("one")),
-        false => query,
-    };
-    derive(&model, Some(text), query, options).unwrap_or_else(|error| panic!("{robot} {quantity}: {error}"))
+use mozzi::Model;
+use mozzi::quantities::{Of, Query};
+use mozzi_symbolic::{Derivation, Error, Options, derive};
+
+/// The model of a URDF text.
+pub fn model(text: &str) -> Model {
+    mozzi_urdf::parse("robot.urdf", text).expect("sound").description.build().expect("sound")
 }
 
-fn mozzi_urdf_frame(query: &Query) -> bool {
-    query.declaration().of == mozzi::quantities::Of::Frame
+/// A quantity of a URDF text; the end effector's, if it is of a frame.
+pub fn attempt(text: &str, quantity: &str, options: &Options) -> Result<Derivation, Error> {
+    let model = model(text);
+    let mut query = Query::named(quantity).expect(quantity);
+    if query.declaration().of == Of::Frame {
+        query = query.of(model.end_effector().expect("one"));
+    }
+    derive(&model, Some(text), query, options)
 }
 
-#[test]
-fn look() {
-    let options = Options { symbols: Symbols::ALL, equal: Equal::OfLink, ..Options::default() };
-    for quantity in ["M", "c", "g", "tau", "C", "T", "J_b", "J_s", "dJ_b", "kinetic", "potential", "Y"] {
-        let found = of("two_link_planar", quantity, &options);
-        println!("{}", found.print(Language::Text));
-        println!("{}", found.print(Language::Latex));
-        println!("{:?}", found.operations());
-    }
-    for (robot, quantity) in [("furuta_pendulum", "M"), ("furuta_pendulum", "c")] {
-        println!("{}", of(robot, quantity, &options).print(Language::Text));
-        println!("{}", of(robot, quantity, &options).print(Language::Python));
-        println!("{}", of(robot, quantity, &options).print(Language::Sympy));
-    }
-    for (robot, quantity) in [("ur5", "M"), ("panda", "g"), ("panda", "M")] {
-      for names in [false, true] {
-        let start = std::time::Instant::now();
-        let found = of(robot, quantity, &Options { names, ..Options::default() });
-        println!("{robot} {quantity} {:?} {:?}", start.elapsed(), found.operations());
-      }
-    }
+/// As [`attempt`], which succeeds.
+pub fn of(text: &str, quantity: &str, options: &Options) -> Derivation {
+    attempt(text, quantity, options).unwrap_or_else(|error| panic!("{quantity}: {error}"))
+}
+
+/// The text of an embedded robot.
+pub fn embedded(robot: &str) -> &'static str {
+    mozzi_urdf::embedded::text(robot).expect(robot)
 }
