@@ -59,6 +59,11 @@ pub(crate) fn input(model: &Model, input: &Input, length: usize) -> Vec<Symbol> 
     named.into_iter().map(symbol).collect()
 }
 
+/// The wrench (m, f) that the end effector applies.
+pub(crate) fn wrench() -> Vec<Symbol> {
+    (1..=6).map(|k| Symbol::atom(state(Name::new("F", k, ""), Class::Linear))).collect()
+}
+
 /// The groups of angles: joints whose axes are parallel in every configuration are in one.
 pub(crate) fn groups(model: &Model, theta: &[Symbol]) -> Vec<Group> {
     let joints: Vec<_> = model.moving_joints().collect();

@@ -13,9 +13,9 @@ use crate::rational::Rational;
 use crate::read::NotRead;
 use crate::sines::shortened;
 use crate::symbol::{Symbol, end, start, with_table};
-use crate::table::Table;
+use crate::table::{Fault, Table};
 use mozzi::quantities::{Memory, Query};
-use mozzi::{Description, Model, Scalar};
+use mozzi::{Description, Environment, FrameId, Model, Scalar, Wrench};
 use std::fmt;
 
 /// How sums are grouped.
@@ -98,8 +98,8 @@ impl fmt::Display for Error {
                 let quantity = quantity.replace('_', "-");
                 write!(
                     f,
-                    "{quantity} would have entries of {terms} terms, expected at most {LONGEST}; numbers instead of \
-                     symbols are shorter: --symbols none, or lock joints: --lock"
+                    "{quantity} would have sums of {terms} terms, expected at most {LONGEST}. Numbers instead of symbols \
+                     are shorter (symbols: none), and so are robots with locked joints"
                 )
             }
             Error::NotProven { quantity, entry, what } => {
@@ -144,6 +144,8 @@ pub struct Derivation {
     pub(crate) angle_error: f64,
     /// The symbols that occur.
     pub legend: Vec<Meaning>,
+    /// Whether its numbers are those of formulas, ½, and not the file's.
+    pub(crate) has_fractions: bool,
     pub(crate) table: Table,
 }
 
@@ -178,6 +180,15 @@ impl Formula {
 /// Longer entries are not derived: a person reads none of them, and grouping takes longer and longer.
 const LONGEST: usize = 30_000;
 
+/// Fails if an operation left the polynomials.
+pub(crate) fn check_fault(quantity: &'static str) -> Result<(), Error> {
+    match with_table(|table| table.fault.take()) {
+        None => Ok(()),
+        Some(Fault::Left(what)) => Err(Error::NotPolynomial { quantity, what }),
+        Some(Fault::TooLong(terms)) => Err(Error::TooLong { quantity, terms }),
+    }
+}
+
 /// The robot in symbols, in a derivation that starts.
 pub(crate) fn described(
     model: &Model,
@@ -190,10 +201,8 @@ pub(crate) fn described(
     let groups = angles::groups(model, &theta);
     with_table(|table| table.groups = groups);
     let description = parameters.describe(model.description(), text).map_err(Error::NotRead)?;
-    match with_table(|table| table.fault.take()) {
-        Some(what) => Err(Error::NotPolynomial { quantity: "the model", what }),
-        None => Ok((description, parameters)),
-    }
+    check_fault("the model")?;
+    Ok((description, parameters))
 }
 
 /// Derives a quantity. `text` is the URDF whose decimals are read; without it, the numbers of the description are
@@ -210,16 +219,20 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
     }
     let (description, parameters) = described(model, text, options)?;
     let symbolic = description.build()?;
-    let inputs: Vec<Vec<Symbol>> = declaration
+    let mut inputs: Vec<Vec<Symbol>> = declaration
         .inputs
         .iter()
         .zip(query.input_lengths(model))
         .map(|(input, length)| angles::input(model, input, length))
         .collect();
-    let outputs = kernel(&query, &symbolic, &inputs);
-    if let Some(what) = with_table(|table| table.fault.take()) {
-        return Err(Error::NotPolynomial { quantity, what });
+    let tip = declaration.name.starts_with("tip_forces").then(|| model.end_effector()).transpose()?;
+    let mut names_of_inputs: Vec<&'static str> = declaration.inputs.iter().map(|input| input.name).collect();
+    if tip.is_some() {
+        inputs.push(angles::wrench());
+        names_of_inputs.push("F");
     }
+    let outputs = kernel(&query, &symbolic, &inputs, tip);
+    check_fault(quantity)?;
     let mut found: Vec<Vec<Polynomial>> = Vec::new();
     for output in &outputs {
         found.push(output.iter().map(|x| x.polynomial()).collect());
@@ -243,26 +256,36 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
             .collect()
     });
     let names = if options.names { cse::name(&mut formulas) } else { Vec::new() };
-    proof::prove(quantity, &query, &symbolic, &inputs, &formulas, &names)?;
+    proof::prove(&query, &symbolic, &inputs, tip, &formulas, &names)?;
     let id = |x: &Symbol| x.single_atom().unwrap_or_default();
-    let ids = declaration.inputs.iter().zip(&inputs).map(|(of, all)| (of.name, all.iter().map(id).collect())).collect();
+    let ids = names_of_inputs.into_iter().zip(&inputs).map(|(of, all)| (of, all.iter().map(id).collect())).collect();
     let table = end();
+    let has_fractions = options.symbols.are_all();
     let (angles, angle_error, legend_of_all) = (parameters.angles, parameters.angle_error, parameters.legend);
-    let mut derivation = Derivation { quantity, formulas, names, inputs: ids, angles, angle_error, legend: Vec::new(), table };
+    let mut derivation = Derivation { quantity, formulas, names, inputs: ids, angles, angle_error, legend: Vec::new(), has_fractions, table };
     let entries = derivation.formulas.iter().flat_map(|formula| &formula.entries);
     let entries: Vec<&Expression> = derivation.names.iter().chain(entries).collect();
     derivation.legend = legend_of(&derivation.table, &entries, legend_of_all);
-    proof::compare(&derivation, &query, model)?;
+    proof::compare(&derivation, &query, model, tip)?;
     Ok(derivation)
 }
 
-/// The quantity's outputs on symbols.
-pub(crate) fn kernel(query: &Query, model: &Model<Symbol>, inputs: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
+/// The quantity's outputs on symbols; the last input is the wrench of the tip, if there is one.
+pub(crate) fn kernel(
+    query: &Query,
+    model: &Model<Symbol>,
+    inputs: &[Vec<Symbol>],
+    tip: Option<FrameId>,
+) -> Vec<Vec<Symbol>> {
     let mut outputs: Vec<Vec<Symbol>> =
         query.output_lengths(model).map(|length| vec![Symbol::zero(); length]).collect();
     let mut slices: Vec<&mut [Symbol]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+    let (inputs, wrench) = inputs.split_at(query.declaration().inputs.len());
+    let applied: Vec<(FrameId, Wrench<Symbol>)> =
+        tip.into_iter().zip(wrench).map(|(tip, F)| (tip, Wrench::from_array(std::array::from_fn(|k| F[k])))).collect();
+    let environment = Environment { applied: &applied, ..model.environment() };
     let inputs: Vec<&[Symbol]> = inputs.iter().map(Vec::as_slice).collect();
-    query.evaluate(model, &inputs, &model.environment(), &mut Memory::new(model), &mut slices);
+    query.evaluate(model, &inputs, &environment, &mut Memory::new(model), &mut slices);
     outputs
 }
 

@@ -29,6 +29,11 @@ impl Symbols {
     /// No numbers.
     pub const NONE: Symbols =
         Symbols { masses: false, lengths: false, inertias: false, gravity: false, joints: false };
+
+    /// True if bodies, distances and gravity are symbols.
+    pub(crate) fn are_all(self) -> bool {
+        self.masses && self.lengths && self.inertias && self.gravity
+    }
 }
 
 /// Which equal numbers of one kind are one symbol.

@@ -2,7 +2,7 @@
 //! at a random state with the file's numbers.
 
 use crate::atom::{Angle, Atom, Id};
-use crate::derive::{Derivation, Error, Formula, kernel};
+use crate::derive::{Derivation, Error, Formula, check_fault, kernel};
 use crate::evaluate::{self, Numbers};
 use crate::expression::Expression;
 use crate::polynomial::Polynomial;
@@ -10,7 +10,7 @@ use crate::rational::Rational;
 use crate::symbol::{Symbol, set_point, with_table};
 use mozzi::quantities::Query;
 use mozzi::random::Random;
-use mozzi::{Freedom, Model, Scalar};
+use mozzi::{Environment, FrameId, Freedom, Model, Scalar, Wrench};
 use std::collections::HashMap;
 
 /// A random rational point: numbers for all parameters and states, and for each angle a rational point of the circle.
@@ -106,14 +106,14 @@ fn substituted(point: &Point, p: &Polynomial) -> Symbol {
 
 /// Compares formulas with the kernel at random rational points, exactly.
 pub(crate) fn prove(
-    quantity: &'static str,
     query: &Query,
     model: &Model<Symbol>,
     inputs: &[Vec<Symbol>],
+    tip: Option<FrameId>,
     formulas: &[Formula],
     names: &[Expression],
 ) -> Result<(), Error> {
-    let mut random = Random(0x6d6f_7a7a_6921);
+    let (quantity, mut random) = (query.name(), Random(0x6d6f_7a7a_6921));
     for _ in 0..2 {
         let point = Point::random(&mut random);
         let at = |x: Symbol| substituted(&point, &x.polynomial());
@@ -127,7 +127,7 @@ pub(crate) fn prove(
         let inputs: Vec<Vec<Symbol>> =
             inputs.iter().map(|input| input.iter().map(|&x| if is_angle(x) { x } else { at(x) }).collect()).collect();
         set_point(Some(point.clone()));
-        let expected = kernel(query, &at_point, &inputs);
+        let expected = kernel(query, &at_point, &inputs, tip);
         set_point(None);
         let mut values: Vec<Symbol> = Vec::new();
         let (atom, plain) = (|id: Id| constant(&point, id), |x: &Rational| Symbol::from(x.clone()));
@@ -143,9 +143,7 @@ pub(crate) fn prove(
                 }
             }
         }
-        if let Some(what) = with_table(|table| table.fault.take()) {
-            return Err(Error::NotPolynomial { quantity, what });
-        }
+        check_fault(quantity)?;
     }
     Ok(())
 }
@@ -176,7 +174,12 @@ impl Derivation {
 }
 
 /// Compares a derivation with the model's own kernel in `f64`.
-pub(crate) fn compare(derivation: &Derivation, query: &Query, model: &Model) -> Result<(), Error> {
+pub(crate) fn compare(
+    derivation: &Derivation,
+    query: &Query,
+    model: &Model,
+    tip: Option<FrameId>,
+) -> Result<(), Error> {
     let mut random = Random(8);
     let inputs: Vec<Vec<f64>> = query
         .declaration()
@@ -189,7 +192,12 @@ pub(crate) fn compare(derivation: &Derivation, query: &Query, model: &Model) -> 
         })
         .collect();
     let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-    let expected = model.compute(*query, &slices, &model.environment())?;
+    let F: [f64; 6] = random.array();
+    let applied: Vec<(FrameId, Wrench)> = tip.into_iter().map(|tip| (tip, Wrench::from_array(F))).collect();
+    let environment = Environment { applied: &applied, ..model.environment() };
+    let expected = model.compute(*query, &slices, &environment)?;
+    let wrench = tip.map(|_| &F[..]);
+    let slices: Vec<&[f64]> = slices.into_iter().chain(wrench).collect();
     let found = derivation.evaluate(&slices, Rational::to_f64, std::f64::consts::PI);
     // angles that were read as multiples of π change what depends on them
     let snapped = derivation.angle_error;

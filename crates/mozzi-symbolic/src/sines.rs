@@ -28,8 +28,13 @@ pub(crate) fn shortened(table: &mut Table, p: &Polynomial) -> Vec<Term> {
     terms
 }
 
-fn size(terms: &[Term]) -> (usize, i32) {
-    let degree = |m: &Monomial| m.factors().map(|(_, k)| k.abs()).sum::<i32>();
+/// The terms, then the products; a multiple of an angle is one, too.
+fn size(table: &Table, terms: &[Term]) -> (usize, i32) {
+    let doubled = |id: Id| match table.atom(id) {
+        Atom::Trig(trig) => trig.harmonic.iter().filter(|k| k.abs() > 1).count() as i32,
+        _ => 0,
+    };
+    let degree = |m: &Monomial| m.factors().map(|(id, k)| k.abs() + doubled(id)).sum::<i32>();
     (terms.len(), terms.iter().map(|(m, x)| degree(m) + i32::from(!x.abs().is_one() && !m.is_one())).sum())
 }
 
@@ -62,6 +67,7 @@ fn shorter(table: &mut Table, terms: Vec<Term>, group: usize) -> Vec<Term> {
     let sums: Vec<usize> = sums.into_iter().collect();
     let masks = if sums.len() <= 3 { (0..1_u32 << sums.len()).collect() } else { vec![0, u32::MAX] };
     let mut best = terms.clone();
+    let mut is_given = true;
     for mask in masks {
         let keeps_cosine = |sum: usize| sums.iter().position(|&s| s == sum).is_some_and(|k| mask >> k & 1 == 0);
         let mut total: HashMap<(Monomial, BTreeMap<Single, i32>), Rational> = HashMap::new();
@@ -94,8 +100,9 @@ fn shorter(table: &mut Table, terms: Vec<Term>, group: usize) -> Vec<Term> {
             sum.add(product, &x);
         }
         let candidate = sum.end().0;
-        if size(&candidate) < size(&best) {
-            best = candidate;
+        let (new, old) = (size(table, &candidate), size(table, &best));
+        if new < old || is_given && new == old {
+            (best, is_given) = (candidate, false);
         }
     }
     best

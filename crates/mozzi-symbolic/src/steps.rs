@@ -2,7 +2,7 @@
 //! the blocks of the stacked matrices. The torques are compared with the kernel's, exactly.
 
 use crate::angles;
-use crate::derive::{Collect, Error, Formula, Options, described, kernel, legend_of, written};
+use crate::derive::{Collect, Error, check_fault, Formula, Options, described, kernel, legend_of, written};
 use crate::expression::Expression;
 use crate::parameters::Meaning;
 use crate::symbol::{Symbol, end, with_table};
@@ -29,6 +29,8 @@ pub struct Steps {
     pub steps: Vec<Step>,
     /// The symbols that occur.
     pub legend: Vec<Meaning>,
+    /// Whether its numbers are those of formulas, ½, and not the file's.
+    pub(crate) has_fractions: bool,
     pub(crate) table: Table,
 }
 
@@ -190,14 +192,12 @@ pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Ste
         writer.add(format!("τ{}", crate::print::below(j + 1)), format!(r"\tau_{{{}}}", j + 1), Vec::new(), vec![*tau]);
     }
     stacked(&mut writer, &links);
-    let found = kernel(&query, &robot.build()?, &inputs).swap_remove(0);
-    if let Some(what) = with_table(|table| table.fault.take()) {
-        return Err(Error::NotPolynomial { quantity, what });
-    }
+    let found = kernel(&query, &robot.build()?, &inputs, None).swap_remove(0);
+    check_fault(quantity)?;
     if let Some(entry) = (0..tau.len()).find(|&j| tau[j] != found[j]) {
         return Err(Error::NotProven { quantity, entry, what: "the recursion's torque differs".into() });
     }
-    Ok(finish(writer, parameters.legend))
+    Ok(Steps { has_fractions: options.symbols.are_all(), ..finish(writer, parameters.legend) })
 }
 
 /// The blocks of 𝒲 and ℒ; those of 𝒜 and 𝒢 are in the recursion.
@@ -231,5 +231,5 @@ fn finish(writer: Writer, all: Vec<Meaning>) -> Steps {
     .collect();
     let table = end();
     let entries: Vec<&Expression> = steps.iter().flat_map(|step| &step.formula.entries).collect();
-    Steps { legend: legend_of(&table, &entries, all), steps, table }
+    Steps { legend: legend_of(&table, &entries, all), steps, has_fractions: false, table }
 }

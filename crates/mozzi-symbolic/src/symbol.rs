@@ -5,7 +5,7 @@ use crate::evaluate;
 use crate::polynomial::{Monomial, Polynomial, Sum};
 use crate::proof::Point;
 use crate::rational::Rational;
-use crate::table::Table;
+use crate::table::{Fault, Table};
 use mozzi::{Real, Scalar};
 use std::cell::RefCell;
 use std::cmp::Ordering;
@@ -75,7 +75,7 @@ impl Session {
     }
 
     fn fail(&mut self, what: impl Into<String>) -> Symbol {
-        self.table.fault.get_or_insert(what.into());
+        self.table.fault.get_or_insert(Fault::Left(what.into()));
         ZERO
     }
 }

@@ -21,9 +21,24 @@ pub(crate) struct Table {
     known: HashMap<Atom, Id>,
     pub groups: Vec<Group>,
     products: HashMap<(Id, Id), Polynomial>,
-    /// Why a result is none, if an operation left the polynomials.
-    pub fault: Option<String>,
+    /// The terms that were computed so far.
+    work: usize,
+    /// Why there is no result, if an operation left the polynomials, or there are too many terms.
+    pub fault: Option<Fault>,
 }
+
+/// Why a kernel has no result in polynomials.
+#[derive(Clone, Debug)]
+pub(crate) enum Fault {
+    /// What the kernel does that no polynomial can do.
+    Left(String),
+    /// A product of this many terms.
+    TooLong(usize),
+}
+
+/// A product of more terms is not computed, nor are more terms in all: half a minute.
+const MOST: usize = 2_000_000;
+const MOST_IN_ALL: usize = 100_000_000;
 
 impl Table {
     /// The index of an atom, which is added if it is new.
@@ -149,6 +164,12 @@ impl Table {
             (_, Some(x)) => return if x.is_zero() { Polynomial::default() } else { p.scaled(&x) },
             _ => {}
         }
+        let products = p.terms().len().saturating_mul(q.terms().len());
+        self.work = self.work.saturating_add(products);
+        if self.fault.is_some() || products > MOST || self.work > MOST_IN_ALL {
+            self.fault.get_or_insert(Fault::TooLong(products));
+            return Polynomial::default();
+        }
         let mut sum = Sum::default();
         for (a, x) in p.terms() {
             let special: Vec<Id> = a.factors().map(|(id, _)| id).filter(|&id| self.is_special(id)).collect();
@@ -207,7 +228,7 @@ impl Table {
 
     fn fail(&mut self, q: &Polynomial) -> Polynomial {
         let what = if q.is_zero() { "divides by 0".to_string() } else { format!("divides by a sum of {} terms", q.terms().len()) };
-        self.fault.get_or_insert(what);
+        self.fault.get_or_insert(Fault::Left(what));
         Polynomial::default()
     }
 

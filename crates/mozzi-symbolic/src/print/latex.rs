@@ -7,6 +7,7 @@ use crate::expression::Expression;
 use crate::parameters::Meaning;
 use crate::rational::Rational;
 use crate::steps::Steps;
+use num_traits::ToPrimitive;
 
 pub(crate) struct Latex;
 
@@ -34,7 +35,7 @@ impl Style for Latex {
     fn number(&self, x: &Rational) -> String {
         let (a, b) = x.parts();
         match x.to_decimal() {
-            Some(text) if x.integer().is_some() || b.bits() > 7 => text,
+            Some(text) if x.integer().is_some() || ![2, 4, 8].contains(&b.to_u64().unwrap_or(0)) => text,
             _ => format!(r"\tfrac{{{a}}}{{{b}}}"),
         }
     }

@@ -102,7 +102,10 @@ impl<S: Style> Printer<'_, S> {
                 for (k, term) in terms.iter().enumerate() {
                     match (k, term.is_negative()) {
                         (0, _) => sum.push_str(&self.expression(term)),
-                        (_, true) => sum.push_str(&format!(" - {}", self.expression(&term.negated()))),
+                        (_, true) => match term.negated() {
+                            inner @ Expression::Sum(_) => sum.push_str(&format!(" - ({})", self.expression(&inner))),
+                            inner => sum.push_str(&format!(" - {}", self.expression(&inner))),
+                        },
                         (_, false) => sum.push_str(&format!(" + {}", self.expression(term))),
                     }
                 }

@@ -9,8 +9,8 @@ use crate::rational::Rational;
 use crate::steps::Steps;
 
 pub(crate) struct Text {
-    /// Fractions are written as such: the formula has symbols, not decimals.
-    pub has_symbols: bool,
+    /// Fractions are written as such, not as decimals.
+    pub has_fractions: bool,
 }
 
 const SUBSCRIPTS: [char; 10] = ['₀', '₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈', '₉'];
@@ -36,7 +36,7 @@ impl Style for Text {
     fn number(&self, x: &Rational) -> String {
         let (a, b) = x.parts();
         let is_small = a.bits() < 8 && b.bits() < 8;
-        match (self.has_symbols && is_small && x.integer().is_none(), x) {
+        match (self.has_fractions && is_small && x.integer().is_none(), x) {
             (true, Rational::Small(1, 2)) => "½".into(),
             (true, Rational::Small(1, 4)) => "¼".into(),
             (true, Rational::Small(3, 4)) => "¾".into(),
@@ -85,6 +85,7 @@ impl Style for Text {
         let ends_in_letters = last.chars().last().is_some_and(|c| c.is_ascii_lowercase() && last.chars().count() > 1);
         let starts_long = right.contains('_');
         let digits = right.starts_with(|c: char| c.is_ascii_digit());
+        let ends_open = ends_open || right.starts_with('(') && (left.contains("sin") || left.contains("cos"));
         match is_function(right) || ends_open || ends_in_letters || starts_long || digits || left.contains('_') {
             true => format!("{left} {right}"),
             false => format!("{left}{right}"),
@@ -102,7 +103,7 @@ impl Style for Text {
 const WIDE: usize = 110;
 
 pub(crate) fn page(derivation: &Derivation) -> String {
-    let style = Text { has_symbols: !derivation.legend.is_empty() };
+    let style = Text { has_fractions: derivation.has_fractions };
     let printer = Printer { style: &style, table: &derivation.table };
     let mut lines = Vec::new();
     for (k, name) in derivation.names.iter().enumerate() {
@@ -120,7 +121,7 @@ pub(crate) fn page(derivation: &Derivation) -> String {
 
 /// The recursion, part by part.
 pub(crate) fn steps(steps: &Steps) -> String {
-    let style = Text { has_symbols: !steps.legend.is_empty() };
+    let style = Text { has_fractions: steps.has_fractions };
     let printer = Printer { style: &style, table: &steps.table };
     let mut lines = Vec::new();
     for step in &steps.steps {
