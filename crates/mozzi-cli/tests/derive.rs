@@ -5,7 +5,8 @@ use crate::common::{complaint, folder, json, mozzi, text};
 #[test]
 fn each_form_is_printed() {
     let page = text(&["derive", "two_link_planar", "--equal", "link"]);
-    for part in ["M(θ) =", "m₁L₁² + m₂(L₁² + 2L₁L₂ cos θ₂ + L₂²)", "c(θ, θ̇) =", "g(θ) =", "g = 9.81 m/s²: gravity z"] {
+    for part in ["M(θ) =", "m₁L₁² + m₂(L₁² + 2L₁L₂ cos θ₂ + L₂²)", "c(θ, θ̇) =", "g(θ) =", "g = 9.81 m/s²: gravity z"]
+    {
         assert!(page.contains(part), "{part} in {page}");
     }
     for (form, part) in [
@@ -21,7 +22,10 @@ fn each_form_is_printed() {
     }
     let told = json(&["derive", "two_link_planar", "g", "--equal", "link"]);
     let found = &told["derivations"][0];
-    assert_eq!((found["quantity"].as_str(), found["symbols"][0]["name"].as_str()), (Some("gravity-forces"), Some("m1")));
+    assert_eq!(
+        (found["quantity"].as_str(), found["symbols"][0]["name"].as_str()),
+        (Some("gravity-forces"), Some("m1"))
+    );
     assert_eq!(found["operations"]["sines"], 2);
     assert!(text(&["derive", "two_link_planar", "--list"]).contains("mass-matrix"));
     let steps = text(&["derive", "two_link_planar", "--steps", "--equal", "link"]);

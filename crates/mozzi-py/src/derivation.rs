@@ -186,7 +186,8 @@ impl PyDerivation {
     /// -------
     /// sympy.Expr, sympy.Matrix or dict
     fn sympy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let code = CString::new(self.0.print(Language::Sympy)).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let code =
+            CString::new(self.0.print(Language::Sympy)).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let scope = PyDict::new(py);
         py.run(&code, Some(&scope), None)?;
         let get = |name: &str| scope.get_item(name)?.ok_or_else(|| PyRuntimeError::new_err(name.to_string()));

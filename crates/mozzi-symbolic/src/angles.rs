@@ -105,7 +105,8 @@ pub(crate) fn groups(model: &Model, theta: &[Symbol]) -> Vec<Group> {
     let mut groups = Vec::new();
     for first in 0..n {
         let members: Vec<usize> = (0..n).filter(|&j| group_of[j] == first).collect();
-        let turning = |j: &usize| joints.iter().zip(&sources).zip(&is_angle).any(|((_, s), turns)| s.joint == *j && *turns);
+        let turning =
+            |j: &usize| joints.iter().zip(&sources).zip(&is_angle).any(|((_, s), turns)| s.joint == *j && *turns);
         let members: Vec<usize> = members.into_iter().filter(turning).collect();
         if members.is_empty() {
             continue;

@@ -44,8 +44,7 @@ impl Grouping<'_> {
     /// velocities, then the others, each in its shortest grouping.
     pub fn shortest(&self, terms: &[Term]) -> Expression {
         let has = |m: &Monomial, class: Class| m.factors().any(|(id, _)| self.classes[id as usize] == class);
-        let (linear, others): (Vec<Term>, Vec<Term>) =
-            terms.iter().cloned().partition(|(m, _)| has(m, Class::Linear));
+        let (linear, others): (Vec<Term>, Vec<Term>) = terms.iter().cloned().partition(|(m, _)| has(m, Class::Linear));
         let (rates, others): (Vec<Term>, Vec<Term>) = others.into_iter().partition(|(m, _)| has(m, Class::Rate));
         let mut parts: Vec<Expression> = self.by_class(&linear, Class::Linear);
         parts.extend([self.sum(&rates), self.sum(&others)]);

@@ -262,7 +262,17 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
     let table = end();
     let has_fractions = options.symbols.are_all();
     let (angles, angle_error, legend_of_all) = (parameters.angles, parameters.angle_error, parameters.legend);
-    let mut derivation = Derivation { quantity, formulas, names, inputs: ids, angles, angle_error, legend: Vec::new(), has_fractions, table };
+    let mut derivation = Derivation {
+        quantity,
+        formulas,
+        names,
+        inputs: ids,
+        angles,
+        angle_error,
+        legend: Vec::new(),
+        has_fractions,
+        table,
+    };
     let entries = derivation.formulas.iter().flat_map(|formula| &formula.entries);
     let entries: Vec<&Expression> = derivation.names.iter().chain(entries).collect();
     derivation.legend = legend_of(&derivation.table, &entries, legend_of_all);

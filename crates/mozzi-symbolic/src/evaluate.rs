@@ -8,7 +8,12 @@ use mozzi::Scalar;
 
 /// The value with the file's numbers, and with 0 for the state.
 pub(crate) fn at_file(table: &Table, p: &Polynomial) -> f64 {
-    let numbers = Numbers { number: &|x: &Rational| x.to_f64(), position: &|_| 0.0, parameter: &|_, value| value.to_f64(), pi: std::f64::consts::PI };
+    let numbers = Numbers {
+        number: &|x: &Rational| x.to_f64(),
+        position: &|_| 0.0,
+        parameter: &|_, value| value.to_f64(),
+        pi: std::f64::consts::PI,
+    };
     polynomial(table, p, &numbers)
 }
 
@@ -45,7 +50,9 @@ fn angle<S: Scalar>(table: &Table, trig: &Trig, numbers: &Numbers<S>) -> S {
     let mut sum = S::zero();
     for (k, angle) in trig.harmonic.iter().zip(&table.groups[trig.group].angles).filter(|(k, _)| **k != 0) {
         sum += match angle {
-            Angle::Joint { position, over } => (numbers.position)(*position) * (numbers.number)(&Rational::new(*k, *over)),
+            Angle::Joint { position, over } => {
+                (numbers.position)(*position) * (numbers.number)(&Rational::new(*k, *over))
+            }
             Angle::Constant(x) => (numbers.number)(&(x * &Rational::new(*k, 1))),
         };
     }
@@ -62,7 +69,9 @@ pub(crate) fn power<S: Scalar>(x: S, k: i32) -> S {
 pub(crate) fn polynomial<S: Scalar>(table: &Table, p: &Polynomial, numbers: &Numbers<S>) -> S {
     let mut sum = S::zero();
     for (monomial, x) in p.terms() {
-        sum += monomial.factors().fold((numbers.number)(x), |product, (id, k)| product * power(atom(table, id, numbers), k));
+        sum += monomial
+            .factors()
+            .fold((numbers.number)(x), |product, (id, k)| product * power(atom(table, id, numbers), k));
     }
     sum
 }

@@ -70,10 +70,12 @@ impl Expression {
                 Expression::Sum(inner) => all.extend(inner),
                 Expression::Number(x) if x.is_zero() => {}
                 // −(a + b) is −a − b
-                Expression::Product(x, mut factors) if factors.len() == 1 && (-&x).is_one() => match factors.remove(0) {
-                    Expression::Sum(inner) => all.extend(inner.iter().map(Expression::negated)),
-                    other => all.push(Expression::Product(x, vec![other])),
-                },
+                Expression::Product(x, mut factors) if factors.len() == 1 && (-&x).is_one() => {
+                    match factors.remove(0) {
+                        Expression::Sum(inner) => all.extend(inner.iter().map(Expression::negated)),
+                        other => all.push(Expression::Product(x, vec![other])),
+                    }
+                }
                 other => all.push(other),
             }
         }

@@ -27,8 +27,7 @@ impl Symbols {
     /// All numbers.
     pub const ALL: Symbols = Symbols { masses: true, lengths: true, inertias: true, gravity: true, joints: true };
     /// No numbers.
-    pub const NONE: Symbols =
-        Symbols { masses: false, lengths: false, inertias: false, gravity: false, joints: false };
+    pub const NONE: Symbols = Symbols { masses: false, lengths: false, inertias: false, gravity: false, joints: false };
 
     /// True if bodies, distances and gravity are symbols.
     pub(crate) fn are_all(self) -> bool {
@@ -196,9 +195,8 @@ impl Parameters {
             }
             let size = [G.I.xx, G.I.yy, G.I.zz].into_iter().fold(0.0, f64::max);
             let I = at_c.I;
-            let mut entry = |k: usize, x: f64| {
-                number(name, Part::Inertia(k), if x.abs() < 1e-14 * size { 0.0 } else { x })
-            };
+            let mut entry =
+                |k: usize, x: f64| number(name, Part::Inertia(k), if x.abs() < 1e-14 * size { 0.0 } else { x });
             let I = mozzi::Sym3 {
                 xx: entry(0, I.xx)?,
                 xy: entry(1, I.xy)?,
@@ -249,7 +247,8 @@ impl Parameters {
             Part::Axis(_) | Part::Ratio => (None, ""),
         };
         let Some((name, class)) = found else { return Some(value.into()) };
-        let is_on_fixed_base = name.number == Some(0) && matches!(at.part, Part::Center(_) | Part::Mass | Part::Inertia(_));
+        let is_on_fixed_base =
+            name.number == Some(0) && matches!(at.part, Part::Center(_) | Part::Mass | Part::Inertia(_));
         if is_on_fixed_base {
             return Some(value.into()); // it does not move, or is a floating base's own
         }
@@ -295,7 +294,11 @@ impl Parameters {
         let x = value.to_f64();
         let twelfths = (x / std::f64::consts::PI * 12.0).round();
         let error = (x - twelfths * std::f64::consts::PI / 12.0).abs();
-        if twelfths == 0.0 || digits < 4 || error > 2.0 * 10.0_f64.powi(-(digits.min(15) as i32)) || twelfths.abs() > 1e6 {
+        if twelfths == 0.0
+            || digits < 4
+            || error > 2.0 * 10.0_f64.powi(-(digits.min(15) as i32))
+            || twelfths.abs() > 1e6
+        {
             return value.into();
         }
         let multiple = Rational::new(twelfths as i64, 12);

@@ -151,7 +151,8 @@ pub(crate) fn prove(
 impl Derivation {
     /// The entries of a formula at a state, with the file's numbers, in any kind of number.
     pub fn evaluate<S: Scalar>(&self, inputs: &[&[S]], number: impl Fn(&Rational) -> S, pi: S) -> Vec<Vec<S>> {
-        let state: HashMap<Id, S> = self.state_ids().into_iter().zip(inputs.iter().flat_map(|input| input.iter().copied())).collect();
+        let state: HashMap<Id, S> =
+            self.state_ids().into_iter().zip(inputs.iter().flat_map(|input| input.iter().copied())).collect();
         let numbers = Numbers {
             number: &number,
             position: &|id| state.get(&id).copied().unwrap_or(S::zero()),

@@ -176,7 +176,10 @@ fn expand(k: &[i64], is_cosine: bool) -> Vec<(BTreeMap<Single, i32>, Rational)> 
 }
 
 /// With cos² or sin² of each sum replaced by Pythagoras.
-fn reduced(powers: &BTreeMap<Single, i32>, keeps_cosine: &dyn Fn(usize) -> bool) -> Vec<(BTreeMap<Single, i32>, Rational)> {
+fn reduced(
+    powers: &BTreeMap<Single, i32>,
+    keeps_cosine: &dyn Fn(usize) -> bool,
+) -> Vec<(BTreeMap<Single, i32>, Rational)> {
     let mut sum = vec![(powers.clone(), Rational::ONE)];
     loop {
         let high = |(powers, _): &(BTreeMap<Single, i32>, Rational)| {

@@ -2,7 +2,7 @@
 //! the blocks of the stacked matrices. The torques are compared with the kernel's, exactly.
 
 use crate::angles;
-use crate::derive::{Collect, Error, check_fault, Formula, Options, described, kernel, legend_of, written};
+use crate::derive::{Collect, Error, Formula, Options, check_fault, described, kernel, legend_of, written};
 use crate::expression::Expression;
 use crate::parameters::Meaning;
 use crate::symbol::{Symbol, end, with_table};
@@ -208,7 +208,8 @@ fn stacked(writer: &mut Writer, links: &[Link]) {
         let (a, b) = (crate::print::below(i), crate::print::below(link.parent));
         writer.add(format!("𝒲{a},{b}"), format!(r"\mathcal W_{{{i},{}}}", link.parent), vec![6, 6], block(link.T));
     }
-    writer.title = Some("ℒ(θ) = (I − 𝒲)⁻¹: the further blocks; its diagonal is I, and ℒ = 𝒲 from parent to link".into());
+    writer.title =
+        Some("ℒ(θ) = (I − 𝒲)⁻¹: the further blocks; its diagonal is I, and ℒ = 𝒲 from parent to link".into());
     for (i, link) in (1..).zip(links) {
         let (mut T, mut at) = (link.T, link.parent);
         while at > 0 && links[at - 1].parent > 0 {
@@ -223,12 +224,13 @@ fn stacked(writer: &mut Writer, links: &[Link]) {
 
 fn finish(writer: Writer, all: Vec<Meaning>) -> Steps {
     let lines = writer.lines.into_iter();
-    let steps: Vec<Step> = lines.map(|(title, text, latex, shape, entries)| {
-        let polynomials: Vec<_> = entries.iter().map(|x| x.polynomial()).collect();
-        let entries = with_table(|table| written(table, &polynomials, Collect::Shortest));
-        Step { title, text, latex, formula: Formula { name: "", shape, is_symmetric: false, entries } }
-    })
-    .collect();
+    let steps: Vec<Step> = lines
+        .map(|(title, text, latex, shape, entries)| {
+            let polynomials: Vec<_> = entries.iter().map(|x| x.polynomial()).collect();
+            let entries = with_table(|table| written(table, &polynomials, Collect::Shortest));
+            Step { title, text, latex, formula: Formula { name: "", shape, is_symmetric: false, entries } }
+        })
+        .collect();
     let table = end();
     let entries: Vec<&Expression> = steps.iter().flat_map(|step| &step.formula.entries).collect();
     Steps { legend: legend_of(&table, &entries, all), steps, has_fractions: false, table }

@@ -96,7 +96,9 @@ impl Symbol {
     /// The atom, if the expression is one.
     pub(crate) fn single_atom(self) -> Option<Id> {
         with(|session| match session.get(self).terms() {
-            [(monomial, x)] if x.is_one() && monomial.factors().len() == 1 => monomial.factors().next().map(|(id, _)| id),
+            [(monomial, x)] if x.is_one() && monomial.factors().len() == 1 => {
+                monomial.factors().next().map(|(id, _)| id)
+            }
             _ => None,
         })
     }
@@ -322,7 +324,11 @@ fn sin_cos(table: &mut Table, x: &Polynomial) -> Option<(Polynomial, Polynomial)
     Some(found)
 }
 
-fn sum_of_angles(table: &mut Table, a: &(Polynomial, Polynomial), b: &(Polynomial, Polynomial)) -> (Polynomial, Polynomial) {
+fn sum_of_angles(
+    table: &mut Table,
+    a: &(Polynomial, Polynomial),
+    b: &(Polynomial, Polynomial),
+) -> (Polynomial, Polynomial) {
     let s = table.times(&a.0, &b.1).plus(&table.times(&a.1, &b.0));
     let c = table.times(&a.1, &b.1).plus(&table.times(&a.0, &b.0).negated());
     (s, c)

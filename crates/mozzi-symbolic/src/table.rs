@@ -138,7 +138,8 @@ impl Table {
     fn product_to_sum(&mut self, a: &Trig, b: &Trig) -> Polynomial {
         let combined = |sign: i64| a.harmonic.iter().zip(&b.harmonic).map(|(x, y)| x + sign * y).collect();
         let is_cosine = a.is_cosine == b.is_cosine;
-        let (sum, difference) = (self.trig(a.group, is_cosine, combined(1)), self.trig(a.group, is_cosine, combined(-1)));
+        let (sum, difference) =
+            (self.trig(a.group, is_cosine, combined(1)), self.trig(a.group, is_cosine, combined(-1)));
         let both = match (a.is_cosine, b.is_cosine) {
             (true, true) | (false, true) => sum.plus(&difference),
             (false, false) => difference.plus(&sum.negated()),
@@ -227,7 +228,11 @@ impl Table {
     }
 
     fn fail(&mut self, q: &Polynomial) -> Polynomial {
-        let what = if q.is_zero() { "divides by 0".to_string() } else { format!("divides by a sum of {} terms", q.terms().len()) };
+        let what = if q.is_zero() {
+            "divides by 0".to_string()
+        } else {
+            format!("divides by a sum of {} terms", q.terms().len())
+        };
         self.fault.get_or_insert(Fault::Left(what));
         Polynomial::default()
     }
@@ -250,7 +255,9 @@ impl Table {
         }
         let whole = rest.isqrt();
         if whole * whole == rest {
-            return Some(Polynomial::constant(&Rational::new(i64::try_from(whole).ok()?, 1) * &Rational::new(outside, b)));
+            return Some(Polynomial::constant(
+                &Rational::new(i64::try_from(whole).ok()?, 1) * &Rational::new(outside, b),
+            ));
         }
         let rest = u64::try_from(rest).ok().filter(|rest| *rest < 1 << 62)?;
         Some(Polynomial::atom(self.id(Atom::Root(rest))).scaled(&Rational::new(outside, b)))

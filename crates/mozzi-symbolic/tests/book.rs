@@ -3,8 +3,7 @@
 use crate::{embedded, of};
 use mozzi_symbolic::{Collect, Derivation, Equal, Language, Options, Symbols};
 
-const BOOK: Options =
-    Options { symbols: Symbols::ALL, equal: Equal::OfLink, collect: Collect::Shortest, names: false };
+const BOOK: Options = Options { symbols: Symbols::ALL, equal: Equal::OfLink, collect: Collect::Shortest, names: false };
 
 fn formula(derivation: &Derivation) -> String {
     let text = derivation.print(Language::Text);
@@ -22,10 +21,7 @@ fn the_planar_arm_is_that_of_the_book() {
         "M(θ) =\n[ m₁L₁² + m₂(L₁² + 2L₁L₂ cos θ₂ + L₂²) m₂(L₁L₂ cos θ₂ + L₂²) ]\n\
          [ m₂(L₁L₂ cos θ₂ + L₂²) m₂L₂² ]"
     );
-    assert_eq!(
-        formula(&of(robot, "c", &BOOK)),
-        "c(θ, θ̇) =\n[ −m₂L₁L₂ sin θ₂ (2θ̇₁θ̇₂ + θ̇₂²) ]\n[ m₂L₁L₂θ̇₁² sin θ₂ ]"
-    );
+    assert_eq!(formula(&of(robot, "c", &BOOK)), "c(θ, θ̇) =\n[ −m₂L₁L₂ sin θ₂ (2θ̇₁θ̇₂ + θ̇₂²) ]\n[ m₂L₁L₂θ̇₁² sin θ₂ ]");
     assert_eq!(
         formula(&of(robot, "g", &BOOK)),
         "g(θ) =\n[ (m₁ + m₂)L₁g cos θ₁ + m₂L₂g cos(θ₁ + θ₂) ]\n[ m₂L₂g cos(θ₁ + θ₂) ]"
@@ -45,10 +41,7 @@ fn symbols_are_only_what_was_asked_for() {
     let found = of(robot, "M", &Options { symbols: masses, ..BOOK });
     assert!(formula(&found).ends_with("[ m₂(0.2 cos θ₂ + 0.16) 0.16m₂ ]"), "{}", formula(&found));
     let numbers = of(robot, "g", &Options { symbols: Symbols::NONE, ..BOOK });
-    assert_eq!(
-        formula(&numbers),
-        "g(θ) =\n[ 14.715 cos θ₁ + 3.924 cos(θ₁ + θ₂) ]\n[ 3.924 cos(θ₁ + θ₂) ]"
-    );
+    assert_eq!(formula(&numbers), "g(θ) =\n[ 14.715 cos θ₁ + 3.924 cos(θ₁ + θ₂) ]\n[ 3.924 cos(θ₁ + θ₂) ]");
     // by default each number of the file is a symbol of its own
     let separate = of(robot, "M", &Options { equal: Equal::Separate, ..BOOK });
     assert!(formula(&separate).contains("m₁r₁² + m₂(L₁² + 2L₁r₂ cos θ₂ + r₂²)"), "{}", formula(&separate));
@@ -58,10 +51,7 @@ fn symbols_are_only_what_was_asked_for() {
 fn velocities_are_collected_on_request() {
     let by_velocity = Options { collect: Collect::Velocities, ..BOOK };
     let found = formula(&of(embedded("two_link_planar"), "c", &by_velocity));
-    assert_eq!(
-        found,
-        "c(θ, θ̇) =\n[ −2m₂L₁L₂θ̇₁θ̇₂ sin θ₂ − m₂L₁L₂θ̇₂² sin θ₂ ]\n[ m₂L₁L₂θ̇₁² sin θ₂ ]"
-    );
+    assert_eq!(found, "c(θ, θ̇) =\n[ −2m₂L₁L₂θ̇₁θ̇₂ sin θ₂ − m₂L₁L₂θ̇₂² sin θ₂ ]\n[ m₂L₁L₂θ̇₁² sin θ₂ ]");
 }
 
 #[test]

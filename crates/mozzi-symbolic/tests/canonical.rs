@@ -12,7 +12,10 @@ fn fixed_joints_and_units_of_writing_do_not_matter() {
     let other = text
         .replace("xyz=\"0.5 0 0\"", "xyz=\"5e-1 0.0 0\"")
         .replace("<mass value=\"2\"/>", "<mass value=\"2.000\"/>")
-        .replace("<origin xyz=\"0.4 0 0\"/>\n  </joint>", "<origin xyz=\"0.4 0 0\" rpy=\"0 0 6.283185307\"/>\n  </joint>");
+        .replace(
+            "<origin xyz=\"0.4 0 0\"/>\n  </joint>",
+            "<origin xyz=\"0.4 0 0\" rpy=\"0 0 6.283185307\"/>\n  </joint>",
+        );
     assert!(other != text);
     let options = Options { symbols: Symbols::NONE, ..Options::default() };
     for quantity in ["M", "c", "g", "T", "J_b", "J_s", "potential"] {

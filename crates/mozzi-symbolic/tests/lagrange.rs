@@ -63,7 +63,11 @@ fn equations_are_not_longer_than_published_ones() {
         for (quantity, most) in ["M", "c", "g"].into_iter().zip(most) {
             let found = of(&text, quantity, &SYMBOLS);
             let count = found.operations().total();
-            assert!(count <= most, "{name} {quantity}: {count} operations, published {most}\n{}", found.print(Language::Text));
+            assert!(
+                count <= most,
+                "{name} {quantity}: {count} operations, published {most}\n{}",
+                found.print(Language::Text)
+            );
         }
     }
 }

@@ -30,7 +30,11 @@ pub fn chain(name: &str, links: &[Moved]) -> String {
     for (i, link) in (1..).zip(links) {
         let parent = if i == 1 { "base".to_string() } else { format!("link{}", i - 1) };
         let [xx, yy, zz] = link.inertia;
-        let limit = if link.kind == "continuous" { "" } else { "<limit lower=\"-9\" upper=\"9\" effort=\"99\" velocity=\"9\"/>" };
+        let limit = if link.kind == "continuous" {
+            ""
+        } else {
+            "<limit lower=\"-9\" upper=\"9\" effort=\"99\" velocity=\"9\"/>"
+        };
         text.push_str(&format!(
             "<joint name=\"joint{i}\" type=\"{}\"><parent link=\"{parent}\"/><child link=\"link{i}\"/>\
              <origin xyz=\"{}\" rpy=\"{}\"/><axis xyz=\"{}\"/>{limit}</joint>\n\
@@ -83,7 +87,10 @@ pub fn all() -> Vec<(&'static str, String)> {
     ];
     let puma = [
         moved(turn, "0 0 1", "0 0 0.67", "2.1", "0 0.05 0", ["0.011", "0.013", "0.017"]),
-        Moved { rpy: "-1.5707963 0 0", ..moved(turn, "0 0 1", "0 0.14 0", "1.3", "0.23 0 0", ["0.007", "0.019", "0.021"]) },
+        Moved {
+            rpy: "-1.5707963 0 0",
+            ..moved(turn, "0 0 1", "0 0.14 0", "1.3", "0.23 0 0", ["0.007", "0.019", "0.021"])
+        },
         moved(turn, "0 0 1", "0.43 0 0", "0.8", "0 0.12 0", ["0.003", "0.009", "0.01"]),
     ];
     vec![

@@ -154,7 +154,8 @@ fn recursion(arguments: &DeriveArguments, model: &Model, options: &Options) -> R
 /// Quantities whose kernels divide by pivots are no polynomials.
 fn list() -> String {
     let rows = LIST.iter().filter(|declared| !declared.divides);
-    let rows: Vec<Vec<String>> = rows.map(|declared| vec![hyphenated(declared.name), declared.formula.into()]).collect();
+    let rows: Vec<Vec<String>> =
+        rows.map(|declared| vec![hyphenated(declared.name), declared.formula.into()]).collect();
     table(&rows, "ll").iter().map(|line| format!("{line}\n")).collect()
 }
 

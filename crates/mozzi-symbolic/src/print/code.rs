@@ -123,9 +123,9 @@ pub(crate) fn function(derivation: &Derivation, language: Language) -> String {
             format!("{head}def {name}({}):\n{}\n", arguments.join(", "), lines.concat().join("\n"))
         }
         Language::Matlab => {
-            let given = parameters
-                .iter()
-                .map(|(name, value, meaning)| format!("{name} = {value}; % {}, {}", meaning.places.join("; "), meaning.unit));
+            let given = parameters.iter().map(|(name, value, meaning)| {
+                format!("{name} = {value}; % {}, {}", meaning.places.join("; "), meaning.unit)
+            });
             let lines = given.chain(body.iter().map(|line| format!("{line};")));
             let lines: Vec<String> = lines.map(|line| format!("  {line}")).collect();
             let outputs = if results.len() == 1 { all } else { format!("[{all}]") };
@@ -191,7 +191,9 @@ fn array(formula: &Formula, printer: &Printer<Code>, language: Language) -> Stri
             format!("permute(reshape([{}], [{}]), [{}])", entries.join(", "), reversed.join(", "), order.join(", "))
         }
         ([_], _) => format!("[{}]", entries.join(", ")),
-        ([_, columns], _) => format!("[{}]", rows("", " ", "", *columns).join("; ").replace(" + ", "+").replace(" - ", "-")),
+        ([_, columns], _) => {
+            format!("[{}]", rows("", " ", "", *columns).join("; ").replace(" + ", "+").replace(" - ", "-"))
+        }
         (shape, _) => {
             let (reversed, order): (Vec<String>, Vec<String>) =
                 (0..shape.len()).rev().map(|k| (shape[k].to_string(), (k + 1).to_string())).unzip();

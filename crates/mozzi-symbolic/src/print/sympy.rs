@@ -52,7 +52,8 @@ fn exponent(k: i32) -> String {
 
 pub(crate) fn module(derivation: &Derivation) -> String {
     let printer = Printer { style: &Sympy, table: &derivation.table };
-    let mut lines = vec!["from sympy import Matrix, Rational, cos, pi, sign, sin, sqrt, symbols".to_string(), String::new()];
+    let mut lines =
+        vec!["from sympy import Matrix, Rational, cos, pi, sign, sin, sqrt, symbols".to_string(), String::new()];
     for (input, ids) in derivation.inputs.iter().filter(|(_, ids)| !ids.is_empty()) {
         let names: Vec<String> = ids.iter().map(|&id| printer.atom(id, 1)).collect();
         lines.push(format!("{input} = {} = symbols(\"{}\", real=True, seq=True)", names.join(", "), names.join(" ")));

@@ -129,7 +129,8 @@ pub(crate) fn steps(steps: &Steps) -> String {
             lines.extend([String::new(), title.clone()]);
         }
         let formula = &step.formula;
-        let inline = formula.entries.iter().map(|entry| minus(&printer.expression(entry))).collect::<Vec<_>>().join(", ");
+        let inline =
+            formula.entries.iter().map(|entry| minus(&printer.expression(entry))).collect::<Vec<_>>().join(", ");
         match formula.shape[..] {
             [6] if inline.chars().count() < WIDE => lines.push(format!("{} = ({inline})", step.text)),
             _ => lines.extend(equation(&printer, formula, &step.text, &step.text)),
