@@ -125,6 +125,9 @@ enum Command {
     Check(check::CheckArguments),
     /// Convert a robot to URDF, JSON, or Python for NumPy
     Convert(convert::ConvertArguments),
+    /// Derive the equations in symbols: M(θ), c, g, τ, T, J, … as text, LaTeX, SymPy, Python, MATLAB or Julia
+    #[command(after_help = DERIVATIONS, aliases = ["equations", "symbolic"])]
+    Derive(commands::derive::DeriveArguments),
     /// Generate source text of a robot's quantities in Rust, C or CUDA; count operations
     Codegen(commands::codegen::CodegenArguments),
     /// Expand a xacro file, with values of its arguments
@@ -207,6 +210,15 @@ Examples:
   mozzi excite panda --lock panda_finger_joint1=0.02 --max-velocity 1 --max-acceleration 4 --within panda_hand=-0.7,-0.7,0.1,0.7,0.7,1.2
   mozzi excite ur5 --apart wrist_3_link,base_link=0.1,0.2 --goal condition --json
 The motion is smooth, and begins and ends at rest. Then: run it, log it, `mozzi identify`.";
+
+const DERIVATIONS: &str = "\
+Examples:
+  mozzi derive two_link_planar --equal link
+  mozzi derive two_link_planar tau --equal link --as latex
+  mozzi derive furuta_pendulum M c g --as sympy > furuta.py
+  mozzi derive ur5 M --symbols none --cse --as python
+  mozzi derive two_link_planar c --collect velocities
+Every printed expression is compared with the kernel, exactly, at random points.";
 
 const SIMULATIONS: &str = "\
 Examples:
@@ -344,6 +356,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Assemble(arguments)) => assemble::run(arguments),
         Some(Command::Simulate(arguments)) => simulate::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Derive(arguments)) => commands::derive::run(arguments),
         Some(Command::Codegen(arguments)) => commands::codegen::run(arguments),
         Some(Command::Compare(arguments)) => commands::compare::run(arguments),
         Some(Command::Convert(arguments)) => convert::run(arguments),

@@ -225,6 +225,20 @@ impl FileArguments {
         self.under_gravity(self.policy.model(name_or_path)?)
     }
 
+    /// The text of the file if it is URDF, after the expansion of xacro: its numbers with all their decimals.
+    pub fn urdf_text(&self) -> Option<String> {
+        let is_file = Path::new(&self.model).is_file() || self.model == "-";
+        if robot_json::is_json(&self.model) {
+            return None;
+        }
+        if !is_file {
+            return mozzi_urdf::embedded::text(&self.model).map(str::to_string);
+        }
+        let text = input::robot_file(&self.model).ok()?;
+        let expanded = mozzi_urdf::expanded(input::name(&self.model), text.as_bytes(), self.settings()).ok()?;
+        Some(expanded.unwrap_or(text)).filter(|text| text.contains("<robot"))
+    }
+
     fn under_gravity(&self, model: Model) -> Result<Model> {
         match &self.gravity {
             None => Ok(model),

@@ -6,6 +6,7 @@ mod call;
 mod command_line;
 mod compare;
 mod conventions;
+mod derivation;
 mod describe;
 mod environment;
 mod failure;
@@ -35,6 +36,7 @@ fn python_module(module: &Bound<'_, PyModule>) -> PyResult<()> {
     robot::remember_process();
     module.add_class::<model::PyModel>()?;
     methods::add_to(&py.get_type::<model::PyModel>())?;
+    module.add_class::<derivation::PyDerivation>()?;
     module.add_class::<gpu::GpuKernel>()?;
     module.add_class::<gpu::GpuRollout>()?;
     module.add_class::<conventions::Pinocchio>()?;

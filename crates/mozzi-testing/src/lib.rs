@@ -16,6 +16,7 @@ pub mod wide;
 
 pub use given::Given;
 pub use linear::{inverse, solve};
+pub use mozzi_symbolic::NotRead;
 pub use second_way::{SecondWay, second_way, second_way_of_f64};
-pub use urdf::{NotRead, read_urdf};
+pub use urdf::read_urdf;
 pub use wide::{Double, Octuple, Wide};

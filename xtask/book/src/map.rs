@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 28] = [
+const IMPORTED: [(&str, &str); 29] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
@@ -13,6 +13,7 @@ const IMPORTED: [(&str, &str); 28] = [
     ("docs/rust.md", "manual/rust.md"),
     ("crates/mozzi-py/README.md", "manual/python.md"),
     ("docs/cpp.md", "manual/cpp.md"),
+    ("docs/derive.md", "manual/derive.md"),
     ("docs/identify.md", "manual/identify.md"),
     ("docs/gradients.md", "manual/gradients.md"),
     ("docs/jax.md", "manual/jax.md"),

@@ -14,8 +14,16 @@ use crate::workspace::Workspace;
 use std::path::PathBuf;
 
 /// The libraries whose documentation the book contains.
-const DOCUMENTED: [&str; 7] =
-    ["mozzi", "mozzi-sim", "mozzi-urdf", "mozzi-motion", "mozzi-engine", "mozzi-identify", "mozzi-report"];
+const DOCUMENTED: [&str; 8] = [
+    "mozzi",
+    "mozzi-sim",
+    "mozzi-urdf",
+    "mozzi-motion",
+    "mozzi-engine",
+    "mozzi-symbolic",
+    "mozzi-identify",
+    "mozzi-report",
+];
 
 /// Where the book is written.
 const FOLDER: &str = "target/book";

@@ -6,12 +6,13 @@ use crate::workspace::Workspace;
 use serde_json::Value;
 
 /// Those with a documented interface, in an order in which each depends on earlier ones.
-pub const PUBLIC: [&str; 9] = [
+pub const PUBLIC: [&str; 10] = [
     "mozzi",
     "mozzi-sim",
     "mozzi-xacro",
     "mozzi-urdf",
     "mozzi-engine",
+    "mozzi-symbolic",
     "mozzi-gpu",
     "mozzi-motion",
     "mozzi-identify",

@@ -8,6 +8,7 @@ pub mod compare;
 pub mod completions;
 pub mod compute;
 pub mod convert;
+pub mod derive;
 pub mod excite;
 pub mod explain;
 pub mod identify;

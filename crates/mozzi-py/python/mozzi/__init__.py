@@ -7,6 +7,7 @@ from . import _quantities, controllers, conventions, models, modern_robotics, tr
 from ._compare import Comparison, compare
 from ._identify import Excitation, Forces, Identification, Verdict, Weighed, excite, identify
 from ._mozzi import (
+    Derivation,
     DivergedError,
     DynamicsWarning,
     InverseKinematics,
@@ -48,6 +49,7 @@ __all__ = [
     "ConstrainedDynamics",
     "ConstrainedForwardDynamicsDerivatives",
     "ConstraintRank",
+    "Derivation",
     "DivergedError",
     "DynamicsWarning",
     "Engine",

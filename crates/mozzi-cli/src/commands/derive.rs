@@ -1,0 +1,181 @@
+//! `mozzi derive`: a robot's equations in symbols.
+
+use crate::failure::{self, Failure, Result};
+use crate::json;
+use crate::quantity::{hyphenated, of_end_effector, quantity};
+use crate::robot::RobotArguments;
+use crate::text::table;
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mozzi::Model;
+use mozzi::quantities::{LIST, Query};
+use mozzi_symbolic::{Collect, Derivation, Equal, Error, Language, Options, Symbols, derive, steps};
+use serde_json::{Value, json};
+
+#[derive(Args, Debug)]
+pub struct DeriveArguments {
+    #[command(flatten)]
+    robot: RobotArguments,
+    /// The quantities: M c g tau T J_b … [default: M c g]
+    #[arg(value_name = "QUANTITY", value_parser = quantity())]
+    quantity: Vec<Query<'static>>,
+    /// Form of the equations
+    #[arg(long = "as", value_name = "FORM", default_value = "text", value_parser = language())]
+    language: Language,
+    /// The numbers of the file that become symbols, separated by commas: masses, lengths, inertias, gravity, joints
+    /// (friction and springs), all, none [default: all up to three moving links, else none]
+    #[arg(long, value_name = "KIND,…", value_parser = symbols)]
+    symbols: Option<Symbols>,
+    /// Which equal numbers of one kind are one symbol
+    #[arg(long, value_name = "WHERE", default_value = "none", value_parser = equal())]
+    equal: Equal,
+    /// How sums are grouped
+    #[arg(long, value_name = "HOW", default_value = "shortest", value_parser = collect())]
+    collect: Collect,
+    /// Name sub-expressions that occur more than once
+    #[arg(long)]
+    cse: bool,
+    /// Print the Newton-Euler recursion link by link: T, 𝒜, 𝒱, 𝒱̇, 𝒢, 𝓕, τ, and the blocks of 𝒲 and ℒ
+    #[arg(long, conflicts_with_all = ["quantity", "cse", "collect"])]
+    steps: bool,
+    /// List the quantities that can be derived
+    #[arg(long)]
+    list: bool,
+}
+
+/// A value by its name and help.
+type Named<T> = (&'static str, &'static str, T);
+
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(values: [Named<T>; N]) -> impl TypedValueParser<Value = T> {
+    let shown = values.map(|(name, help, _)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(shown).map(move |name| {
+        let found = values.iter().find(|value| value.0 == name);
+        found.unwrap_or(&values[0]).2
+    })
+}
+
+fn language() -> impl TypedValueParser<Value = Language> {
+    one_of([
+        ("text", "The book's letters", Language::Text),
+        ("latex", "LaTeX with amsmath", Language::Latex),
+        ("markdown", "Markdown with LaTeX formulas and a table of the symbols", Language::Markdown),
+        ("sympy", "A Python module of SymPy expressions, with exact numbers", Language::Sympy),
+        ("python", "A Python function of NumPy arrays", Language::Python),
+        ("matlab", "A MATLAB function", Language::Matlab),
+        ("julia", "A Julia function", Language::Julia),
+    ])
+}
+
+fn equal() -> impl TypedValueParser<Value = Equal> {
+    one_of([
+        ("none", "Each number of the file is a symbol", Equal::Separate),
+        ("link", "Those of one link", Equal::OfLink),
+        ("robot", "Those of the robot", Equal::OfRobot),
+    ])
+}
+
+fn collect() -> impl TypedValueParser<Value = Collect> {
+    one_of([
+        ("shortest", "The fewest operations of several candidates", Collect::Shortest),
+        ("velocities", "By products of velocities: Christoffel symbols as factors", Collect::Velocities),
+    ])
+}
+
+fn symbols(text: &str) -> Result<Symbols, String> {
+    let mut symbols = Symbols::NONE;
+    for word in text.split(',') {
+        match word.trim() {
+            "masses" => symbols.masses = true,
+            "lengths" => symbols.lengths = true,
+            "inertias" => symbols.inertias = true,
+            "gravity" => symbols.gravity = true,
+            "joints" => symbols.joints = true,
+            "all" => symbols = Symbols::ALL,
+            "none" => symbols = Symbols::NONE,
+            word => {
+                return Err(format!(
+                    "found `{word}`, expected some of masses, lengths, inertias, gravity, joints, all, none"
+                ));
+            }
+        }
+    }
+    Ok(symbols)
+}
+
+pub fn run(arguments: &DeriveArguments) -> Result<String> {
+    let model = arguments.robot.load()?;
+    if arguments.list {
+        return Ok(list());
+    }
+    let default = if model.moving_links() <= 3 { Symbols::ALL } else { Symbols::NONE };
+    let options = Options {
+        symbols: arguments.symbols.unwrap_or(default),
+        equal: arguments.equal,
+        collect: arguments.collect,
+        names: arguments.cse,
+    };
+    if arguments.steps {
+        return recursion(arguments, &model, &options);
+    }
+    let mut queries = arguments.quantity.clone();
+    if queries.is_empty() {
+        queries = ["M", "c", "g"].into_iter().map(Query::named).collect::<Result<Vec<Query>, mozzi::Error>>()?;
+    }
+    let mut text = arguments.robot.urdf_text();
+    let mut derivations = Vec::new();
+    for query in queries {
+        let query = of_end_effector(query, &model)?;
+        derivations.push(by_decimals(&mut text, |text| derive(&model, text, query, &options))?);
+    }
+    if arguments.robot.json {
+        return Ok(object(&model, &derivations));
+    }
+    let pages: Vec<String> = derivations.iter().map(|derivation| derivation.print(arguments.language)).collect();
+    Ok(pages.join("\n"))
+}
+
+/// By the file's decimals, else by the shortest decimals of the robot's numbers, with a note.
+fn by_decimals<T>(text: &mut Option<String>, find: impl Fn(Option<&str>) -> Result<T, Error>) -> Result<T> {
+    let mut found = find(text.as_deref());
+    if let (Err(Error::NotRead(error)), true) = (&found, text.is_some()) {
+        failure::note(&format!("the file's decimals are not used, but the robot's shortest decimals: {error}"));
+        *text = None;
+        found = find(None);
+    }
+    found.map_err(|error| Failure::wrong(error.to_string()))
+}
+
+fn recursion(arguments: &DeriveArguments, model: &Model, options: &Options) -> Result<String> {
+    let steps = by_decimals(&mut arguments.robot.urdf_text(), |text| steps(model, text, options))?;
+    let page = steps.print(arguments.language);
+    page.ok_or_else(|| Failure::wrong("--steps is printed as text, latex or markdown".to_string()))
+}
+
+/// Quantities whose kernels divide by pivots are no polynomials.
+fn list() -> String {
+    let rows = LIST.iter().filter(|declared| !declared.divides);
+    let rows: Vec<Vec<String>> =
+        rows.map(|declared| vec![hyphenated(declared.name), declared.formula.into()]).collect();
+    table(&rows, "ll").iter().map(|line| format!("{line}\n")).collect()
+}
+
+fn object(model: &Model, derivations: &[Derivation]) -> String {
+    let one = |derivation: &Derivation| {
+        let count = derivation.operations();
+        let symbol = |meaning: &mozzi_symbolic::Meaning| {
+            json!({
+                "name": meaning.plain_name(), "value": meaning.value.to_f64(), "exact": meaning.value.to_string(),
+                "unit": meaning.unit, "places": meaning.places,
+            })
+        };
+        json!({
+            "quantity": hyphenated(derivation.quantity),
+            "text": derivation.print(Language::Text),
+            "latex": derivation.print(Language::Latex),
+            "sympy": derivation.print(Language::Sympy),
+            "operations": { "additions": count.additions, "products": count.products, "sines": count.sines },
+            "symbols": derivation.legend.iter().map(symbol).collect::<Value>(),
+        })
+    };
+    json::print(&json::of_robot(model, json!({ "derivations": derivations.iter().map(one).collect::<Value>() })))
+}

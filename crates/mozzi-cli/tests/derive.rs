@@ -1,0 +1,73 @@
+//! `mozzi derive`: forms, symbols, counts, refusals.
+
+use crate::common::{complaint, folder, json, mozzi, text};
+
+#[test]
+fn each_form_is_printed() {
+    let page = text(&["derive", "two_link_planar", "--equal", "link"]);
+    for part in ["M(θ) =", "m₁L₁² + m₂(L₁² + 2L₁L₂ cos θ₂ + L₂²)", "c(θ, θ̇) =", "g(θ) =", "g = 9.81 m/s²: gravity z"]
+    {
+        assert!(page.contains(part), "{part} in {page}");
+    }
+    for (form, part) in [
+        ("latex", r"\begin{bmatrix}"),
+        ("markdown", "| $m_{1}$ | 2 | kg | link1 mass |"),
+        ("sympy", "mass_matrix = Matrix(2, 2, ["),
+        ("python", "def mass_matrix(theta, m1=2.0,"),
+        ("matlab", "function out_M = mass_matrix(theta)"),
+        ("julia", "function mass_matrix(theta; m1=2.0,"),
+    ] {
+        let page = text(&["derive", "two_link_planar", "M", "--as", form]);
+        assert!(page.contains(part), "{form}: {page}");
+    }
+    let told = json(&["derive", "two_link_planar", "g", "--equal", "link"]);
+    let found = &told["derivations"][0];
+    assert_eq!(
+        (found["quantity"].as_str(), found["symbols"][0]["name"].as_str()),
+        (Some("gravity-forces"), Some("m1"))
+    );
+    assert_eq!(found["operations"]["sines"], 2);
+    assert!(text(&["derive", "two_link_planar", "--list"]).contains("mass-matrix"));
+    let steps = text(&["derive", "two_link_planar", "--steps", "--equal", "link"]);
+    assert!(steps.contains("outward, link 2: link2") && steps.contains("𝓕₁") && steps.contains("τ₁ = "), "{steps}");
+}
+
+/// With named sub-expressions, fewer than 1.3 times the operations of the recorded program.
+#[test]
+fn an_arms_mass_matrix_is_as_short_as_its_program() {
+    for (robot, quantity) in [("ur5", "mass-matrix"), ("ur5", "gravity-forces")] {
+        let told = json(&["derive", robot, quantity, "--symbols", "none", "--cse"]);
+        let count = &told["derivations"][0]["operations"];
+        let found = count["additions"].as_u64().expect("a number") + count["products"].as_u64().expect("a number");
+        let work = json(&["codegen", robot, "--quantity", quantity, "--explain"]);
+        let flops = work["work"][0]["after"]["flops"].as_u64().expect("a number");
+        println!("{robot} {quantity}: {found} operations, the recorded program {flops}");
+        assert!(found as f64 <= 1.3 * flops as f64, "{found} operations, the program {flops}");
+    }
+}
+
+#[test]
+fn edited_and_other_robots_are_derived_by_their_own_decimals() {
+    let run = mozzi(&["derive", "panda", "g", "--lock", "panda_finger_joint1=0.02"]);
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success() && said.contains("the file's decimals are not used"), "{said}");
+    let json = folder("derive").join("arm.json");
+    text(&["convert", "two_link_planar", json.to_str().expect("a path")]);
+    let page = text(&["derive", json.to_str().expect("a path"), "M", "--equal", "link"]);
+    assert!(page.contains("m₁L₁² + m₂(L₁² + 2L₁L₂ cos θ₂ + L₂²)"), "{page}");
+    let moon = text(&["derive", "two_link_planar", "g", "--gravity", "moon", "--symbols", "none"]);
+    assert!(moon.contains("2.43 cos θ₁ + 0.648 cos(θ₁ + θ₂)"), "{moon}");
+}
+
+#[test]
+fn what_cannot_be_derived_is_refused_by_name() {
+    for (arguments, part) in [
+        (&["derive", "ur5", "aba"][..], "forward-dynamics divides by pivots"),
+        (&["derive", "ur5", "M", "--symbols", "weights"], "found `weights`, expected some of masses"),
+        (&["derive", "ur5", "--floating", "--steps"], "a floating base"),
+        (&["derive", "two_link_planar", "--steps", "--as", "julia"], "--steps is printed as text, latex or markdown"),
+    ] {
+        let (code, said) = complaint(arguments);
+        assert!(code != 0 && said.contains(part), "{said}");
+    }
+}

@@ -1,0 +1,49 @@
+"""Equations in symbols: forms, and their values."""
+
+import mozzi
+import numpy as np
+import pytest
+
+
+def test_the_planar_arm_is_that_of_the_book():
+    M = mozzi.models.two_link_planar().derive("mass_matrix", equal="link")
+    assert "m₁L₁² + m₂(L₁² + 2L₁L₂ cos θ₂ + L₂²)" in str(M)
+    assert M.quantity == "mass_matrix" and M.operations == (4, 14, 1)
+    assert M.values == {"m1": 2.0, "m2": 1.0, "L1": 0.5, "L2": 0.4}
+    assert M._repr_latex_().startswith("$$") and r"\begin{bmatrix}" in M.latex()
+    assert "function" in M.matlab() and "function" in M.julia() and "| $m_{1}$ |" in M.markdown()
+
+
+@pytest.mark.parametrize("name", ["ur5", "furuta_pendulum", "two_link_planar"])
+@pytest.mark.parametrize("cse", [False, True])
+def test_python_text_computes_what_the_kernel_computes(name, cse, random):
+    robot = getattr(mozzi.models, name)()
+    scope = {}
+    exec(robot.derive("mass_matrix", cse=cse).python(), scope)
+    theta = random.uniform(-2, 2, robot.n)
+    expected = robot.mass_matrix(theta)
+    assert np.allclose(scope["mass_matrix"](theta), expected, atol=1e-9 * np.abs(expected).max())
+
+
+def test_sympy_has_the_expressions():
+    sympy = pytest.importorskip("sympy")
+    arm = mozzi.models.two_link_planar()
+    g = arm.derive("gravity_forces", equal="link").sympy()
+    assert g.shape == (2, 1)
+    names = {str(symbol) for symbol in g.free_symbols}
+    assert names == {"m1", "m2", "L1", "L2", "g", "theta1", "theta2"}
+    energy = arm.derive("potential_energy", equal="link").sympy()
+    theta1 = next(symbol for symbol in energy.free_symbols if str(symbol) == "theta1")
+    assert sympy.simplify(sympy.diff(energy, theta1) - g[0]) == 0
+
+
+def test_what_cannot_be_derived_is_refused():
+    arm = mozzi.models.two_link_planar()
+    with pytest.raises(ValueError, match="divides by pivots"):
+        arm.derive("forward_dynamics")
+    with pytest.raises(ValueError, match="symbols has 'weights'"):
+        arm.derive("mass_matrix", symbols="weights")
+    with pytest.raises(ValueError, match="equal is 'all'"):
+        arm.derive("mass_matrix", equal="all")
+    changed = arm.with_payload("tip", np.diag([0.0, 0, 0, 0.3, 0.3, 0.3]))
+    assert "M(θ)" in str(changed.derive("mass_matrix"))

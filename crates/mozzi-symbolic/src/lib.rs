@@ -1,0 +1,35 @@
+//! The equations of a robot on paper: mozzi's kernels on symbols.
+//!
+//! [`derive`](derive()) runs a quantity's kernel on `Model<Symbol>`, whose numbers are exact: the file's decimals as
+//! rationals, symbols with the book's names for parameters, sines and cosines of sums of angles about parallel axes.
+//! The sums are canonical polynomials; the shortest of several groupings is printed. Every printed expression is
+//! compared with the kernel, exactly, at random rational points.
+
+mod angles;
+mod atom;
+mod collect;
+mod cse;
+mod derive;
+mod evaluate;
+mod expression;
+mod order;
+mod parameters;
+mod polynomial;
+mod print;
+mod proof;
+mod rational;
+mod read;
+mod sines;
+mod steps;
+mod symbol;
+mod table;
+
+pub use atom::{Class, Name};
+pub use derive::{Collect, Derivation, Error, Formula, Options, derive};
+pub use expression::Operations;
+pub use parameters::{Equal, Meaning, Symbols};
+pub use print::Language;
+pub use rational::Rational;
+pub use read::{At, NotRead, Part, read_urdf};
+pub use steps::{Step, Steps, steps};
+pub use symbol::Symbol;

@@ -1,0 +1,226 @@
+//! Every expression is compared with the kernel before it is printed: exactly, at random rational points, and in `f64`,
+//! at a random state with the file's numbers.
+
+use crate::atom::{Angle, Atom, Id};
+use crate::derive::{Derivation, Error, Formula, check_fault, kernel};
+use crate::evaluate::{self, Numbers};
+use crate::expression::Expression;
+use crate::polynomial::Polynomial;
+use crate::rational::Rational;
+use crate::symbol::{Symbol, set_point, with_table};
+use mozzi::quantities::Query;
+use mozzi::random::Random;
+use mozzi::{Environment, FrameId, Freedom, Model, Scalar, Wrench};
+use std::collections::HashMap;
+
+/// A random rational point: numbers for all parameters and states, and for each angle a rational point of the circle.
+/// Roots stay symbols, so that equality is exact.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Point {
+    values: HashMap<Id, Rational>,
+    /// (sine, cosine) by group and place.
+    circle: HashMap<(usize, usize), (Rational, Rational)>,
+}
+
+fn number(random: &mut Random) -> Rational {
+    let sign = if random.below(2) == 0 { 1 } else { -1 };
+    Rational::new(sign * (1 + random.below(997) as i64), 1 + random.below(8) as i64)
+}
+
+/// ((1 − t²)/(1 + t²), 2t/(1 + t²)).
+fn circle(random: &mut Random) -> (Rational, Rational) {
+    let (a, b) = (1 + random.below(40) as i64, 1 + random.below(40) as i64);
+    let sign = if random.below(2) == 0 { 1 } else { -1 };
+    let over = a * a + b * b;
+    (Rational::new(sign * 2 * a * b, over), Rational::new(a * a - b * b, over))
+}
+
+impl Point {
+    fn random(random: &mut Random) -> Self {
+        with_table(|table| {
+            let mut point = Point::default();
+            for id in 0..table.len() as Id {
+                if let Atom::Parameter { .. } | Atom::State { .. } = table.atom(id) {
+                    point.values.insert(id, number(random));
+                }
+            }
+            for id in 0..table.len() as Id {
+                if let Atom::Real { imaginary, .. } = table.atom(id).clone() {
+                    // a rational unit quaternion, by two points of circles
+                    let [(a, b), (c, d), (e, f)] = [circle(random), circle(random), circle(random)];
+                    let parts = [&a * &c, &a * &d, &b * &e, &b * &f];
+                    for (id, x) in [id].into_iter().chain(imaginary).zip(parts) {
+                        point.values.insert(id, x);
+                    }
+                }
+            }
+            for (g, group) in table.groups.iter().enumerate() {
+                for k in 0..group.angles.len() {
+                    point.circle.insert((g, k), circle(random));
+                }
+            }
+            point
+        })
+    }
+
+    /// The value of an atom; roots are their own. None for a sign or inverse, which is made of others.
+    pub fn value(&self, atom: &Atom, id: Id) -> Option<Rational> {
+        match atom {
+            Atom::Trig(trig) => {
+                let (mut s, mut c) = (Rational::ZERO, Rational::ONE);
+                for (k, times) in trig.harmonic.iter().enumerate() {
+                    let (sine, cosine) = &self.circle[&(trig.group, k)];
+                    let sine = if *times < 0 { -sine } else { sine.clone() };
+                    for _ in 0..times.abs() {
+                        (s, c) = (&(&s * cosine) + &(&c * &sine), &(&c * cosine) - &(&s * &sine));
+                    }
+                }
+                Some(if trig.is_cosine { c } else { s })
+            }
+            _ => self.values.get(&id).cloned(),
+        }
+    }
+}
+
+fn constant(point: &Point, id: Id) -> Symbol {
+    let atom = with_table(|table| table.atom(id).clone());
+    match (point.value(&atom, id), atom) {
+        (Some(x), _) => x.into(),
+        (None, Atom::Sign(p)) => {
+            let x = substituted(point, &p);
+            if f64::from(x) > 0.0 { Symbol::one() } else { -Symbol::one() }
+        }
+        (None, Atom::Inverse(p)) => Symbol::one() / substituted(point, &p),
+        (None, _) => Symbol::atom(id),
+    }
+}
+
+fn substituted(point: &Point, p: &Polynomial) -> Symbol {
+    let mut sum = Symbol::zero();
+    for (monomial, x) in p.terms() {
+        let start = Symbol::from(x.clone());
+        sum += monomial.factors().fold(start, |product, (id, k)| product * evaluate::power(constant(point, id), k));
+    }
+    sum
+}
+
+/// Compares formulas with the kernel at random rational points, exactly.
+pub(crate) fn prove(
+    query: &Query,
+    model: &Model<Symbol>,
+    inputs: &[Vec<Symbol>],
+    tip: Option<FrameId>,
+    formulas: &[Formula],
+    names: &[Expression],
+) -> Result<(), Error> {
+    let (quantity, mut random) = (query.name(), Random(0x6d6f_7a7a_6921));
+    for _ in 0..2 {
+        let point = Point::random(&mut random);
+        let at = |x: Symbol| substituted(&point, &x.polynomial());
+        let at_point = model.map(at);
+        // angles stay symbols, whose sines are numbers; other inputs are numbers
+        let is_angle = |x: Symbol| {
+            let Some(id) = x.single_atom() else { return false };
+            let is_joint = |angle: &Angle| matches!(angle, Angle::Joint { position, .. } if *position == id);
+            with_table(|table| table.groups.iter().any(|group| group.angles.iter().any(is_joint)))
+        };
+        let inputs: Vec<Vec<Symbol>> =
+            inputs.iter().map(|input| input.iter().map(|&x| if is_angle(x) { x } else { at(x) }).collect()).collect();
+        set_point(Some(point.clone()));
+        let expected = kernel(query, &at_point, &inputs, tip);
+        set_point(None);
+        let mut values: Vec<Symbol> = Vec::new();
+        let (atom, plain) = (|id: Id| constant(&point, id), |x: &Rational| Symbol::from(x.clone()));
+        for name in names {
+            values.push(name.value(&atom, &plain, &values));
+        }
+        for (formula, expected) in formulas.iter().zip(&expected) {
+            for (entry, (expression, &expected)) in formula.entries.iter().zip(expected).enumerate() {
+                let (found, expected) = (expression.value(&atom, &plain, &values), at(expected));
+                if found != expected {
+                    let what = format!("{} instead of {}", f64::from(found), f64::from(expected));
+                    return Err(Error::NotProven { quantity, entry, what });
+                }
+            }
+        }
+        check_fault(quantity)?;
+    }
+    Ok(())
+}
+
+impl Derivation {
+    /// The entries of a formula at a state, with the file's numbers, in any kind of number.
+    pub fn evaluate<S: Scalar>(&self, inputs: &[&[S]], number: impl Fn(&Rational) -> S, pi: S) -> Vec<Vec<S>> {
+        let state: HashMap<Id, S> =
+            self.state_ids().into_iter().zip(inputs.iter().flat_map(|input| input.iter().copied())).collect();
+        let numbers = Numbers {
+            number: &number,
+            position: &|id| state.get(&id).copied().unwrap_or(S::zero()),
+            parameter: &|_, value| number(value),
+            pi,
+        };
+        let atoms: Vec<S> = (0..self.table.len() as Id).map(|id| evaluate::atom(&self.table, id, &numbers)).collect();
+        let (atom, mut values) = (|id: Id| atoms[id as usize], Vec::new());
+        for name in &self.names {
+            values.push(name.value(&atom, &number, &values));
+        }
+        let entry = |expression: &Expression| expression.value(&atom, &number, &values);
+        self.formulas.iter().map(|formula| formula.entries.iter().map(entry).collect()).collect()
+    }
+
+    /// The numbers of the state in the order of the quantity's inputs.
+    fn state_ids(&self) -> Vec<Id> {
+        self.inputs.iter().flat_map(|(_, ids)| ids).copied().collect()
+    }
+}
+
+/// Compares a derivation with the model's own kernel in `f64`.
+pub(crate) fn compare(
+    derivation: &Derivation,
+    query: &Query,
+    model: &Model,
+    tip: Option<FrameId>,
+) -> Result<(), Error> {
+    let mut random = Random(8);
+    let inputs: Vec<Vec<f64>> = query
+        .declaration()
+        .inputs
+        .iter()
+        .zip(query.input_lengths(model))
+        .map(|(input, length)| match input.name {
+            "theta" => random_positions(model, &mut random),
+            _ => random.vector(length, 1.0),
+        })
+        .collect();
+    let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+    let F: [f64; 6] = random.array();
+    let applied: Vec<(FrameId, Wrench)> = tip.into_iter().map(|tip| (tip, Wrench::from_array(F))).collect();
+    let environment = Environment { applied: &applied, ..model.environment() };
+    let expected = model.compute(*query, &slices, &environment)?;
+    let wrench = tip.map(|_| &F[..]);
+    let slices: Vec<&[f64]> = slices.into_iter().chain(wrench).collect();
+    let found = derivation.evaluate(&slices, Rational::to_f64, std::f64::consts::PI);
+    // angles that were read as multiples of π change what depends on them
+    let snapped = derivation.angle_error;
+    let noise = 1e-13 * model.mass().abs().max(1.0) * 100.0;
+    for (found, expected) in found.iter().zip(&expected) {
+        let size = expected.iter().fold(1e-300_f64, |size, x| size.max(x.abs()));
+        for (entry, (found, expected)) in found.iter().zip(expected).enumerate() {
+            if !((found - expected).abs() <= (1e-9 + 1e3 * snapped) * size + noise) {
+                let what = format!("{found} instead of {expected}");
+                return Err(Error::NotProven { quantity: derivation.quantity, entry, what });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn random_positions(model: &Model, random: &mut Random) -> Vec<f64> {
+    let mut theta = random.vector(model.nq(), 2.0);
+    for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
+        let quaternion = &mut theta[place.q..place.q + 4];
+        let size = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+        quaternion.iter_mut().for_each(|x| *x /= size);
+    }
+    theta
+}

@@ -1,0 +1,80 @@
+//! SymPy derives the same equations from the same files, by Lagrange's equations.
+
+use crate::robots::all;
+use crate::{attempt, of};
+use mozzi_symbolic::{Language, Options, Symbols};
+use std::path::Path;
+use std::process::Command;
+
+const SYMBOLS: Options = Options {
+    symbols: Symbols::ALL,
+    equal: mozzi_symbolic::Equal::Separate,
+    collect: mozzi_symbolic::Collect::Shortest,
+    names: false,
+};
+
+/// The Python with SymPy, if there is one.
+fn python() -> Option<String> {
+    let python = std::env::var("MOZZI_PYTHON").unwrap_or_else(|_| "python3".into());
+    let has = Command::new(&python).args(["-c", "import sympy"]).output().is_ok_and(|output| output.status.success());
+    if !has {
+        println!("skipped: there is no Python with SymPy; MOZZI_PYTHON names one");
+    }
+    has.then_some(python)
+}
+
+#[test]
+fn sympy_derives_the_same() {
+    let Some(python) = python() else { return };
+    let folder = std::env::temp_dir().join(format!("mozzi-lagrange-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lagrange.py");
+    for (name, text) in all() {
+        let write = |file: &str, text: &str| {
+            let path = folder.join(file);
+            std::fs::write(&path, text).expect("written");
+            path
+        };
+        let mut command = Command::new(&python);
+        command.arg(&script).arg(write("robot.urdf", &text));
+        for quantity in ["mass_matrix", "velocity_product", "gravity_forces"] {
+            let module = of(&text, quantity, &SYMBOLS).print(Language::Sympy);
+            command.arg(write(&format!("{quantity}.py"), &module));
+        }
+        let output = command.output().expect("Python runs");
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(said.starts_with("equal"), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    std::fs::remove_dir_all(&folder).expect("removed");
+}
+
+/// Additions and products of M (on and above the diagonal), c and g, counted by hand in the sources' equations.
+const PUBLISHED: [(&str, [usize; 3]); 2] = [
+    // Spong, Hutchinson and Vidyasagar 2006, section 7.3: M₁₁ 13, M₁₂ 6, M₂₂ 3; h(2q̇₁q̇₂ + q̇₂²) 8, −hq̇₁² 5; g₁ 9, g₂ 3
+    ("RR", [22, 13, 12]),
+    // Tedrake, Underactuated Robotics, section 3.2: m_c + m_p, m_p l cos θ, m_p l²; m_p l θ̇² sin θ; m_p g l sin θ
+    ("cart-pole", [5, 4, 3]),
+];
+
+#[test]
+fn equations_are_not_longer_than_published_ones() {
+    for (name, most) in PUBLISHED {
+        let (_, text) = all().into_iter().find(|(other, _)| *other == name).expect(name);
+        for (quantity, most) in ["M", "c", "g"].into_iter().zip(most) {
+            let found = of(&text, quantity, &SYMBOLS);
+            let count = found.operations().total();
+            assert!(
+                count <= most,
+                "{name} {quantity}: {count} operations, published {most}\n{}",
+                found.print(Language::Text)
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_no_polynomial_is_refused_by_name() {
+    let (_, text) = &all()[0];
+    let error = attempt(text, "mass_matrix_inverse", &SYMBOLS).expect_err("an inverse").to_string();
+    assert!(error.starts_with("mass-matrix-inverse divides by pivots"), "{error}");
+}
