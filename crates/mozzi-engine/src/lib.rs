@@ -55,7 +55,7 @@ mod many;
 mod program;
 
 pub use emit::{Block, CudaLayout, EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
-pub use jit::{Extent, Form, Kernel, MOST_ARRAYS, Refusal, Shape};
+pub use jit::{Extent, Form, Kernel, Listing, MOST_ARRAYS, Refusal, Shape, Tally};
 pub use many::{
     Batch, BatchEnvironment, BatchGradient, BatchRollout, Compiled, Direction, Engine, Error, Number, compile,
 };
