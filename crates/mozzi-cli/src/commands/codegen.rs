@@ -13,7 +13,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::Model;
 use mozzi::quantities::{LIST, Query};
 use mozzi_engine::{
-    Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Precision, Refusal, Shape, SourceFile, emit,
+    Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Number, Precision, Refusal, Shape, SourceFile, emit,
     estimate, record_quantity,
 };
 use serde_json::{Value, json};

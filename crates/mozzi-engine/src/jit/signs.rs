@@ -148,3 +148,93 @@ impl Line {
         Signed(self.node(operation, operands), is_negative)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::lower::lower;
+    use super::*;
+    use crate::{Arguments, Program, record, record_quantity};
+    use mozzi::Scalar;
+    use mozzi::quantities::{ForwardDynamics, InverseDynamicsDerivatives};
+
+    /// The outputs of a lowered program in `f64`, by interpretation.
+    fn outputs(lowered: &Lowered, inputs: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut values: Vec<f64> = Vec::new();
+        for node in &lowered.nodes {
+            values.push(match *node {
+                Node::Constant(bits) => f64::from_bits(bits),
+                Node::Input(array, entry) => inputs[array as usize][entry as usize],
+                Node::Apply(operation, operands) => {
+                    let [a, b, c] = operands.map(|operand| values.get(operand as usize).copied().unwrap_or_default());
+                    let bits = |f: fn(u64, u64) -> u64| f64::from_bits(f(a.to_bits(), b.to_bits()));
+                    match operation {
+                        Operation::Add => a + b,
+                        Operation::Sub => a - b,
+                        Operation::Mul => a * b,
+                        Operation::Div => a / b,
+                        Operation::Min => a.min(b),
+                        Operation::Max => a.max(b),
+                        Operation::Sqrt => a.sqrt(),
+                        Operation::MulAdd => f64::mul_add(a, b, c),
+                        Operation::MulSub => f64::mul_add(a, b, -c),
+                        Operation::NegMulAdd => f64::mul_add(-a, b, c),
+                        Operation::NegMulSub => f64::mul_add(-a, b, -c),
+                        Operation::Neg => -a,
+                        Operation::Select => {
+                            let odd = a.to_bits();
+                            f64::from_bits(odd & b.to_bits() | !odd & c.to_bits())
+                        }
+                        Operation::And => bits(|a, b| a & b),
+                        Operation::Xor => bits(|a, b| a ^ b),
+                        Operation::SubBits => bits(u64::wrapping_sub),
+                        Operation::ShiftLeft(by) => f64::from_bits(a.to_bits() << by),
+                        Operation::Interleave(..) | Operation::Pick(_) => unreachable!("of rows"),
+                    }
+                }
+            });
+        }
+        lowered.outputs.iter().map(|list| list.iter().map(|&value| values[value as usize]).collect()).collect()
+    }
+
+    fn arithmetic(lowered: &Lowered) -> [usize; 2] {
+        let count = |is: fn(Operation) -> bool| {
+            lowered.nodes.iter().filter(|node| matches!(node, Node::Apply(operation, _) if is(*operation))).count()
+        };
+        [
+            count(|operation| matches!(operation, Operation::MulSub | Operation::NegMulSub)),
+            count(|operation| operation == Operation::Neg),
+        ]
+    }
+
+    /// The same numbers, by instructions that vectors have; few changes of sign are left.
+    fn check(program: &Program) {
+        let number = |array: usize, k: usize| ((7 * array + 3 * k) % 11) as f64 / 4.0 - 1.3;
+        let length = |array: &crate::Array| array.length;
+        let inputs: Vec<Vec<f64>> = (program.inputs().iter().map(length).enumerate())
+            .map(|(array, length)| (0..length).map(|k| number(array, k)).collect())
+            .collect();
+        for shape in [Shape::TwoF64, Shape::FourF64] {
+            let of = || lower(program, shape, usize::MAX).expect("no tanh");
+            let moved = moved_out(of(), shape);
+            let (expected, found) = (outputs(&of(), &inputs), outputs(&moved, &inputs));
+            assert!(expected == found, "{}, {shape:?}", program.name()); // 0 and −0 are equal
+            assert!(expected.iter().flatten().any(|&x| x != 0.0));
+            let ([products, _], [left, signs]) = (arithmetic(&of()), arithmetic(&moved));
+            assert!(left == 0 && 4 * signs <= products + 8, "{}: {products} and {signs}", program.name());
+        }
+    }
+
+    #[test]
+    fn numbers_stay_and_signs_move() {
+        let model = mozzi_urdf::open("panda").unwrap().build().unwrap();
+        check(&record_quantity(&model, InverseDynamicsDerivatives, Arguments::default()).unwrap());
+        check(&record_quantity(&model, ForwardDynamics, Arguments::default()).unwrap());
+        let program = record("signs", &[("x", 3)], |x| {
+            let [a, b, c] = [x[0][0], x[0][1], x[0][2]];
+            let difference = a.mul_add(b, -c);
+            let roots = [(difference * difference).sqrt(), (-difference).sgn(), difference.sin_cos().1];
+            vec![("y", roots.to_vec()), ("z", vec![-difference, (-a).mul_add(b, -c), difference / (a - b)])]
+        });
+        check(&program.expect("short"));
+    }
+}
