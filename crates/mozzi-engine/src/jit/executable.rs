@@ -159,7 +159,7 @@ impl Executable {
         type Function = extern "sysv64" fn(*const *mut u8, usize);
         #[cfg(target_arch = "aarch64")]
         type Function = extern "C" fn(*const *mut u8, usize);
-        // SAFETY: a whole function of this signature begins there (`function.rs` of each machine), and the processor has
+        // SAFETY: a whole function of this signature begins there (each machine's `function.rs`), and the processor has
         // its instructions (`new`). It accesses only the arrays at the given addresses, each as long as the assembler
         // assumed for so many runs (checked by the callers; the outputs are borrowed exclusively), its constants, and
         // its frame, on its stack or borrowed by `run_beside`.

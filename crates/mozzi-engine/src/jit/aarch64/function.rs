@@ -1,5 +1,5 @@
-//! The function around the code: it saves the caller's registers, makes its frame, takes the arrays' addresses, and runs
-//! the code in a loop, whose number of passes is an argument.
+//! The function around the code: it saves the caller's registers, makes its frame, takes the arrays' addresses, and
+//! runs the code in a loop, whose number of passes is an argument.
 
 use super::encode::add_immediate;
 use super::{Address, Arm, FIRST_BASE};
@@ -17,8 +17,8 @@ const RETURN: u32 = 0xd65f_03c0;
 const INVALID: u32 = 0;
 
 impl Arm {
-    /// The function of each segment: x0 → an array of addresses, x1 runs (AAPCS64). It keeps no return address: the link
-    /// register stays as it is.
+    /// The function of each segment: x0 → an array of addresses, x1 runs (AAPCS64). It keeps no return address: the
+    /// link register stays as it is.
     pub fn functions(mut self, steps: &[usize]) -> (Vec<u8>, Vec<usize>) {
         let mut steps = steps.to_vec();
         let is_on_stack = self.cuts.is_empty() && self.frame_bytes() <= LARGEST_ON_STACK;
