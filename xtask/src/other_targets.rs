@@ -64,7 +64,33 @@ pub fn aarch64_programs(workspace: &Workspace, seconds: u32) -> Outcome {
     }
 }
 
-/// A few of them, by a package of their own: without what other tests of mozzi-engine need, it is built in a minute.
+/// Machine code computes the same numbers by AVX2 and on AArch64, to the bit.
+pub fn aarch64_bits(workspace: &Workspace) -> Outcome {
+    const RUN: [&str; 7] =
+        ["run", "--quiet", "--release", "--package", "mozzi-engine", "--example", "machine_code_bits"];
+    if !cfg!(target_arch = "x86_64") {
+        return Outcome::Skipped("only on x86-64".into());
+    }
+    let there = match cargo_for_aarch64(workspace, &RUN) {
+        Ok(cargo) => cargo,
+        Err(skipped) => return skipped,
+    };
+    match (command::output(workspace.cargo(&RUN)), command::output(there)) {
+        (Ok((true, here)), Ok((true, there))) => {
+            let lines = || here.lines().zip(there.lines());
+            let is_same = here.lines().count() == there.lines().count() && !here.is_empty();
+            match lines().find(|(here, there)| here != there) {
+                None if is_same => Outcome::Passed(format!("{} numbers", here.split(' ').count())),
+                None => Outcome::Failed("another number of lines".into()),
+                Some((line, _)) => Outcome::Failed(line.split(':').next().unwrap_or_default().to_owned()),
+            }
+        }
+        (Err(why), _) | (_, Err(why)) => Outcome::Failed(why),
+        _ => Outcome::Failed("the example machine_code_bits of mozzi-engine failed".into()),
+    }
+}
+
+/// A few random programs, by a package of their own: without what other tests of mozzi-engine need, it is built in a minute.
 pub fn aarch64_sample(workspace: &Workspace) -> Outcome {
     match cargo_for_aarch64(workspace, &["test", "--manifest-path", "xtask/aarch64/Cargo.toml"]) {
         Ok(mut cargo) => command::outcome(&mut cargo),
