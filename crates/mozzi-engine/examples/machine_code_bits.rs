@@ -28,7 +28,7 @@ fn numbers<T: Number>(kernel: &Kernel, program: &Program) -> Vec<f64> {
     let rows = |(table, output): (&Vec<T>, &mozzi_engine::Output)| {
         table[..STATES * output.values.len()].iter().map(|&x| x.into()).collect::<Vec<f64>>()
     };
-    own.iter().map(|table| &*table).zip(program.outputs()).flat_map(rows).collect()
+    own.iter().zip(program.outputs()).flat_map(rows).collect()
 }
 
 fn line<T: Number>(program: &Program, shapes: [Shape; 2]) -> Result<String, Box<dyn Error>> {
