@@ -8,7 +8,7 @@ use crate::workspace::Workspace;
 /// Permissive licences: they require at most that their notice is kept. MPL-2.0 (changes to the licensed files stay
 /// under it) would be acceptable too, but no dependency needs it, except the book's builder; it is not listed, so that
 /// adding such a package is a decision.
-const ALLOWED: [&str; 10] = [
+const ALLOWED: [&str; 11] = [
     "MIT",
     "Apache-2.0",
     "BSD-2-Clause",
@@ -19,6 +19,7 @@ const ALLOWED: [&str; 10] = [
     "Unicode-3.0",
     "BSL-1.0",
     "CC0-1.0",
+    "0BSD",
 ];
 
 /// Packages that name a file instead of an expression, with the version whose file was read, and its licence.

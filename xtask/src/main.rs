@@ -1,5 +1,5 @@
-//! `cargo xtask test | check | docs | book | page | bench | accuracy | gpu-report | gpu-bench | nightly | wheel |
-//! weigh | api | release | dist | deb | licences`: the same commands as in CI.
+//! `cargo xtask test | check | docs | book | page | bench | accuracy | gpu-report | gpu-bench | jit-report | aarch64 |
+//! nightly | wheel | weigh | api | release | dist | deb | licences`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -22,6 +22,7 @@ mod glibc;
 mod gpu;
 mod house_rules;
 mod inlining;
+mod jit_report;
 mod licences;
 mod main_job;
 mod metadata;
@@ -87,6 +88,9 @@ usage: cargo xtask COMMAND
           MOZZI_GPU_PYTHON names a Python with them (benches/gpu/peers.py)
           --only UR5, --quantity mass_matrix          only this robot or quantity, to standard output
           --states 4194304                            at most this many states in an array, likewise
+  jit-report  count the instructions of machine code for AArch64 beside x86-64's, into docs/arm.md; any machine does
+  aarch64 random programs as machine code for AArch64 by qemu, in two minutes; skipped without qemu-user, a C compiler
+          for it and rustup's target
   nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment, run its README and
@@ -143,6 +147,8 @@ fn main() -> ExitCode {
         ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
         ["gpu-report", ref options @ ..] => one("GPU kernels", || gpu::report(&workspace, options)),
         ["gpu-bench", ref options @ ..] => one("GPU benchmarks", || gpu::bench(&workspace, options)),
+        ["jit-report"] => one("machine code", || jit_report::write(&workspace)),
+        ["aarch64"] => one("AArch64, a sample", || other_targets::aarch64_sample(&workspace)),
         ["accuracy", ref options @ ..] => accuracy(&workspace, options),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
             Ok(options) => one("benchmarks", || bench::run(&workspace, &options)),
@@ -177,6 +183,7 @@ fn test(workspace: &Workspace, options: &[&str]) -> ExitCode {
     report.step("wheel", || wheel::test(workspace));
     report.step("fuzzing", || fuzz::run(workspace, None));
     report.step("no_std", || no_std::check(workspace));
+    report.step("AArch64, a sample", || other_targets::aarch64_sample(workspace));
     let mut programs = examples::Programs::new();
     report.step("examples", || examples::build(workspace, &mut programs));
     for example in examples::list(workspace) {

@@ -40,6 +40,8 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
         accuracy::run(workspace, &["--states", "1000", "--page", &page.to_string_lossy()])
     });
     report.step("AArch64", || other_targets::aarch64(workspace));
+    report.step("AArch64, to the bit", || other_targets::aarch64_bits(workspace));
+    report.step("AArch64, random programs", || other_targets::aarch64_programs(workspace, seconds));
     report.step("Windows and macOS", || other_targets::windows_and_macos(workspace));
     report.step("WebAssembly in node", || other_targets::node(workspace));
     report.step("xacro beside PyPI's", || xacro(workspace, seconds));

@@ -10,30 +10,92 @@ use std::process::Command;
 const RUNNER: &str = "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER";
 const LINKER: &str = "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER";
 
-/// Tests of the libraries whose arithmetic depends on the processor. Times under an emulator say nothing.
-pub fn aarch64(workspace: &Workspace) -> Outcome {
+const TARGET: &str = "aarch64-unknown-linux-gnu";
+/// What they are on Debian, after `apt install qemu-user gcc-aarch64-linux-gnu`.
+const QEMU: &str = "qemu-aarch64";
+const GCC: &str = "aarch64-linux-gnu-gcc";
+const LIBRARIES: &str = "/usr/aarch64-linux-gnu";
+
+/// cargo for this processor: with its own variables if they are set, else with Debian's programs; or what is missing.
+fn cargo_for_aarch64(workspace: &Workspace, arguments: &[&str]) -> Result<Command, Outcome> {
+    let missing = |what: &str| {
+        Outcome::Skipped(format!(
+            "{what}: `apt install qemu-user gcc-aarch64-linux-gnu` (or set {RUNNER} and {LINKER}), \
+             `rustup target add {TARGET}`"
+        ))
+    };
+    if matches!(Compiler::find(TARGET), Ok(None)) {
+        return Err(missing("no standard library for AArch64"));
+    }
+    let mut cargo = workspace.cargo(arguments);
+    cargo.args(["--target", TARGET, "--target-dir"]).arg(workspace.path("target/aarch64"));
     if std::env::var_os(RUNNER).is_none() {
-        return Outcome::Skipped(format!(
-            "set {RUNNER} to qemu-aarch64 and {LINKER} to a C compiler for it, with `rustup target add aarch64-unknown-linux-gnu`"
-        ));
+        if !command::exists(Command::new(QEMU).arg("--version")) {
+            return Err(missing("no qemu-aarch64"));
+        }
+        cargo.env(RUNNER, format!("{QEMU} -L {LIBRARIES}"));
     }
-    let mut cargo = workspace.cargo(&["test", "--target", "aarch64-unknown-linux-gnu", "--tests", "--target-dir"]);
-    cargo.arg(workspace.path("target/aarch64"));
-    if let Some(compiler) = std::env::var_os(LINKER) {
-        cargo.env("CC", compiler); // tests compile emitted C
+    match std::env::var_os(LINKER) {
+        Some(compiler) => cargo.env("CC", compiler), // tests compile emitted C
+        None if command::exists(Command::new(GCC).arg("--version")) => cargo.env(LINKER, GCC).env("CC", GCC),
+        None => return Err(missing("no C compiler for AArch64")),
+    };
+    Ok(cargo)
+}
+
+/// Tests of the libraries whose arithmetic depends on the processor, and of its machine code. Times under an emulator
+/// say nothing.
+pub fn aarch64(workspace: &Workspace) -> Outcome {
+    let packages = ["mozzi", "mozzi-sim", "mozzi-engine", "mozzi-urdf", "mozzi-motion"];
+    match cargo_for_aarch64(workspace, &["test", "--tests"]) {
+        Ok(mut cargo) => command::outcome(cargo.args(packages.iter().flat_map(|package| ["-p", package]))),
+        Err(skipped) => skipped,
     }
-    command::outcome(cargo.args([
-        "-p",
-        "mozzi",
-        "-p",
-        "mozzi-sim",
-        "-p",
-        "mozzi-engine",
-        "-p",
-        "mozzi-urdf",
-        "-p",
-        "mozzi-motion",
-    ]))
+}
+
+/// Random programs as machine code, compared with the interpreter, for so many seconds.
+pub fn aarch64_programs(workspace: &Workspace, seconds: u32) -> Outcome {
+    match cargo_for_aarch64(workspace, &["test", "-p", "mozzi-engine", "--test", "fuzz"]) {
+        Ok(mut cargo) => {
+            cargo.env("MOZZI_FUZZ_SECONDS", seconds.to_string()).args(["--", "--ignored", "--nocapture"]);
+            command::outcome(&mut cargo)
+        }
+        Err(skipped) => skipped,
+    }
+}
+
+/// Machine code computes the same numbers by AVX2 and on AArch64, to the bit.
+pub fn aarch64_bits(workspace: &Workspace) -> Outcome {
+    const RUN: [&str; 7] =
+        ["run", "--quiet", "--release", "--package", "mozzi-engine", "--example", "machine_code_bits"];
+    if !cfg!(target_arch = "x86_64") {
+        return Outcome::Skipped("only on x86-64".into());
+    }
+    let there = match cargo_for_aarch64(workspace, &RUN) {
+        Ok(cargo) => cargo,
+        Err(skipped) => return skipped,
+    };
+    match (command::output(workspace.cargo(&RUN)), command::output(there)) {
+        (Ok((true, here)), Ok((true, there))) => {
+            let lines = || here.lines().zip(there.lines());
+            let is_same = here.lines().count() == there.lines().count() && !here.is_empty();
+            match lines().find(|(here, there)| here != there) {
+                None if is_same => Outcome::Passed(format!("{} numbers", here.split(' ').count())),
+                None => Outcome::Failed("another number of lines".into()),
+                Some((line, _)) => Outcome::Failed(line.split(':').next().unwrap_or_default().to_owned()),
+            }
+        }
+        (Err(why), _) | (_, Err(why)) => Outcome::Failed(why),
+        _ => Outcome::Failed("the example machine_code_bits of mozzi-engine failed".into()),
+    }
+}
+
+/// A few random programs, by a package of their own: without what other tests of mozzi-engine need, it is built in a minute.
+pub fn aarch64_sample(workspace: &Workspace) -> Outcome {
+    match cargo_for_aarch64(workspace, &["test", "--manifest-path", "xtask/aarch64/Cargo.toml"]) {
+        Ok(mut cargo) => command::outcome(&mut cargo),
+        Err(skipped) => skipped,
+    }
 }
 
 /// What users of these systems compile. Nothing is linked or run, for want of their linkers and their machines.

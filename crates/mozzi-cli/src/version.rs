@@ -22,8 +22,9 @@ pub fn long() -> String {
     compiled.sort_unstable();
     compiled.dedup();
     let compiled = if compiled.is_empty() { "not on this machine".to_string() } else { compiled.join(", ") };
+    let unused = Shape::unused().map_or(String::new(), |set| format!(" ({set} is there and not used)"));
     format!(
-        "{version}\ncommit: {commit}\nfeatures: {features}\nmachine code: {compiled}\nfor: {} {}",
+        "{version}\ncommit: {commit}\nfeatures: {features}\nmachine code: {compiled}{unused}\nfor: {} {}",
         std::env::consts::ARCH,
         std::env::consts::OS
     )

@@ -2,8 +2,8 @@
 //!
 //! A quantity's **program** is [`mozzi`]'s own kernel, run once on a number that records its operations. The program is
 //! evaluated in any number, differentiated, written as Rust, C or CUDA, and becomes machine code on an x86-64 with AVX2
-//! and FMA, or AVX-512. A [`Batch`] does this by itself, as soon as it pays; without machine code it runs the kernel,
-//! state by state, on all cores.
+//! and FMA, or AVX-512, and on AArch64. A [`Batch`] does this by itself, as soon as it pays; without machine code it
+//! runs the kernel, state by state, on all cores.
 //!
 //! ```
 //! use mozzi::quantities::InverseDynamics;
@@ -55,7 +55,7 @@ mod many;
 mod program;
 
 pub use emit::{Block, CudaLayout, EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
-pub use jit::{Extent, Form, Kernel, MOST_ARRAYS, Refusal, Shape};
+pub use jit::{Extent, Form, Kernel, Listing, MOST_ARRAYS, Refusal, Shape, Tally};
 pub use many::{
     Batch, BatchEnvironment, BatchGradient, BatchRollout, Compiled, Direction, Engine, Error, Number, compile,
 };

@@ -27,7 +27,7 @@ Each quantity works in each of these ways:
 | any number type: `f32`, dual numbers, your own | `query.evaluate(…)`, or the kernel itself |
 | many states, `f64` and `f32`, all cores; wrenches, gravity and inertial parameters of each state | `mozzi_engine::Batch::compute` |
 | a recorded program, printed, parsed and counted | `mozzi_engine::record_quantity` |
-| machine code at one state and at many (x86-64 with AVX2 and FMA, or AVX-512) | `mozzi_engine::compile` |
+| machine code at one state and at many (x86-64 with AVX2 and FMA, or AVX-512; AArch64) | `mozzi_engine::compile` |
 | Rust, C and CUDA source text | `mozzi_engine::emit`, `mozzi codegen` |
 | arrays on an NVIDIA GPU, but for quantities of tasks | `mozzi_gpu::Source::new`, `mozzi compute … --gpu`, `model.to_gpu()` in Python |
 | the command line | `mozzi compute MODEL QUANTITY` |
@@ -35,7 +35,7 @@ Each quantity works in each of these ways:
 | C and C++, one state and many | `mozzi_quantity(model, workspace, …)`, `workspace.quantity(…)`, `mozzi_batch_compute` |
 
 Arrays are computed by machine code made of the recorded program as soon as that pays (after about a thousand states of a quantity), else,
-and where there is none (other processors than x86-64 with AVX2, code longer than 512 kB with AVX2 or 2 MB with AVX-512), by the
+and where there is none (other processors than x86-64 with AVX2 and AArch64, code longer than 512 kB, or 2 MB with AVX-512), by the
 kernel state after state, on all cores. `engine` reports which; `compile` makes code at once, `kernels_only` never.
 Source text does not check pivots: its functions return them as further outputs.
 ";

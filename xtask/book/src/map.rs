@@ -28,6 +28,7 @@ const IMPORTED: [(&str, &str); 29] = [
     ("benches/RESULTS.md", "about/times.md"),
     ("benches/GPU.md", "about/times-gpu.md"),
     ("docs/gpu.md", "about/gpu.md"),
+    ("docs/arm.md", "about/arm.md"),
     ("docs/performance-log.md", "about/performance-log.md"),
     ("DESIGN.md", "about/design.md"),
     ("docs/design-notes.md", "about/design-notes.md"),

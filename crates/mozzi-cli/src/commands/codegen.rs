@@ -13,7 +13,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::Model;
 use mozzi::quantities::{LIST, Query};
 use mozzi_engine::{
-    Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Precision, Refusal, Shape, SourceFile, emit,
+    Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Number, Precision, Refusal, Shape, SourceFile, emit,
     estimate, record_quantity,
 };
 use serde_json::{Value, json};
@@ -191,11 +191,11 @@ struct Work {
 impl Work {
     fn of(model: &Model, query: Query, further: Arguments, precision: Precision) -> Result<Self> {
         let program = record_quantity(model, query, further)?;
-        let (one, widest, narrower) = match precision {
-            Precision::F64 => (Shape::one_f64(), Shape::EightF64, Shape::FourF64),
-            Precision::F32 => (Shape::OneF32, Shape::SixteenF32, Shape::EightF32),
+        let (one, widest, otherwise) = match precision {
+            Precision::F64 => (Shape::one_f64(), <f64 as Number>::shape(), Shape::FourF64),
+            Precision::F32 => (Shape::one_f32(), <f32 as Number>::shape(), Shape::EightF32),
         };
-        let lanes = if widest.is_supported() { widest } else { narrower };
+        let lanes = widest.unwrap_or(otherwise);
         Ok(Work {
             name: hyphenated(query.name()),
             before: program.count_before_folding(),

@@ -54,9 +54,10 @@ pub(super) fn lines(precision: Precision, dialect: &dyn Dialect) -> (Vec<String>
             Operation::Xor => of_bits("^"),
             Operation::SubBits => dialect.difference_of_bits(&bits(a), &bits(b)),
             Operation::ShiftLeft(by) => format!("{} << {by}", bits(a)),
-            Operation::Min | Operation::Max | Operation::Sqrt | Operation::Interleave(..) | Operation::Pick(_) => {
+            Operation::Neg | Operation::Select | Operation::Min | Operation::Max | Operation::Sqrt => {
                 unreachable!("the sine has none")
             }
+            Operation::Interleave(..) | Operation::Pick(_) => unreachable!("of machine code"),
         };
         let name = format!("r{place}");
         lines.push(match operation.is_of_bits() {

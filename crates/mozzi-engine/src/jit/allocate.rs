@@ -1,14 +1,15 @@
 //! Register allocation for straight-line code: the value whose next use is furthest away is evicted first (Belady
 //! 1966). With equal costs this is optimal.
 
-use super::assembler::{Assembler, Operand, Register};
 use super::instruction::{Node, Operation, SINES, Value};
-use super::lower::{Lowered, SHAPE_TOGETHER, Store};
+use super::lower::{Lowered, Store};
 use super::places::{Places, put_constants};
 use super::registers::{NEVER, Pinned, Registers};
 use super::rows::Extent;
 use super::shape::{Encoding, Shape};
+use super::target::{Assembler, LARGEST_FRAME, MOST_ARRAYS, Operand, Register, Tally};
 use super::{Form, Refusal};
+use std::cell::Cell;
 
 /// Machine code with its constants, before it is placed in executable memory.
 #[derive(Clone, Debug)]
@@ -18,7 +19,7 @@ pub(crate) struct Code {
     pub starts: Vec<usize>,
     /// The constants.
     pub pool: Vec<u8>,
-    pub instructions: usize,
+    pub tally: Tally,
     pub frame: usize,
 }
 
@@ -34,25 +35,25 @@ pub(crate) struct Arrays<'a> {
 
 /// The code of a lowered program; its arrays are inputs, outputs, constants, in this order. Fails if it needs more
 /// arrays, or more memory of its own, than the limits.
-pub(crate) fn allocate(shape: Shape, lowered: &Lowered, arrays: Arrays) -> Result<Code, Refusal> {
-    let mut pool = Vec::new();
-    let before = lowered.before.as_deref().map(|before| (before, put_constants(SHAPE_TOGETHER, before, &mut pool)));
+pub(crate) fn allocate<A: Assembler>(shape: Shape, lowered: &Lowered, arrays: Arrays) -> Result<Code, Refusal> {
+    let (mut pool, together) = (Vec::new(), shape.together());
+    let before = lowered.before.as_deref().map(|before| (before, put_constants(together, before, &mut pool)));
     let constants = put_constants(shape, lowered, &mut pool);
     let mut sizes: Vec<usize> = arrays.extents.iter().map(|extent| extent.size * shape.number()).collect();
     sizes.push(pool.len());
-    if sizes.len() >= super::assembler::MOST_ARRAYS {
+    if sizes.len() >= MOST_ARRAYS {
         return Err(Refusal::Program);
     }
     let memory = sizes.len() - 1;
-    let mut assembler = Assembler::new(shape, &sizes);
+    let mut assembler = A::new(shape, &sizes);
     let mut used = 0;
     if let Some((before, constants)) = before {
         // its results are at the beginning of the frame
-        used = before.outputs[0].len() * SHAPE_TOGETHER.width();
+        used = before.outputs[0].len() * together.width();
         let (first_output, stride, segment) = (assembler.frame(), shape.number(), usize::MAX);
         let places = Places { constants, pool: memory, first_output, stride, used, segment };
-        assembler.set_shape(SHAPE_TOGETHER);
-        assembler = Line::new(SHAPE_TOGETHER, before, places, assembler).code();
+        assembler.set_shape(together);
+        assembler = Line::new(together, before, places, assembler).code();
         assembler.set_shape(shape);
     }
     let stride = if arrays.form == Form::Rows { shape.number() } else { shape.width() };
@@ -61,37 +62,39 @@ pub(crate) fn allocate(shape: Shape, lowered: &Lowered, arrays: Arrays) -> Resul
     let steps: Vec<usize> = extents.iter().map(|extent| extent.step * shape.number()).collect();
     let Arrays { inputs: first_output, segment, .. } = arrays;
     let places = Places { constants, pool: memory, first_output, stride, used, segment };
-    let assembler = Line::new(shape, lowered, places, assembler).code();
-    let (instructions, frame) = (assembler.instructions(), assembler.frame_bytes());
-    if frame > super::assembler::LARGEST_FRAME {
+    let mut assembler = Line::new(shape, lowered, places, assembler).code();
+    let (tally, frame) = (*assembler.tally(), assembler.frame_bytes());
+    if frame > LARGEST_FRAME {
         return Err(Refusal::Long);
     }
     let (bytes, starts) = assembler.finish(&steps);
-    Ok(Code { bytes, starts, pool, instructions, frame })
+    Ok(Code { bytes, starts, pool, tally, frame })
 }
 
-struct Line<'p> {
-    shape: Shape,
+pub(crate) struct Line<'p, A> {
+    pub shape: Shape,
     nodes: &'p [Node],
     places: Places,
-    assembler: Assembler,
+    pub assembler: A,
     /// For each value v, the places that need it: `needs[first[v]..first[v + 1]]`; those before `next[v]` are past.
     needs: Vec<u32>,
     first: Vec<u32>,
     next: Vec<u32>,
     /// For each value, where it is written.
     outputs: Vec<Vec<Store>>,
-    register: Vec<Option<Register>>,
+    pub register: Vec<Option<Register>>,
     registers: Registers,
     slot: Vec<Option<usize>>,
     free_slots: Vec<usize>,
     slots: usize,
     /// Stores that were narrower than a register, without a mask.
     narrow: usize,
+    /// Stores and loads of slots.
+    spills: Cell<usize>,
 }
 
-impl<'p> Line<'p> {
-    fn new(shape: Shape, lowered: &'p Lowered, places: Places, assembler: Assembler) -> Self {
+impl<'p, A: Assembler> Line<'p, A> {
+    fn new(shape: Shape, lowered: &'p Lowered, places: Places, assembler: A) -> Self {
         let nodes = &lowered.nodes[..];
         let mut outputs = vec![Vec::new(); nodes.len()];
         let mut is_needed = vec![false; nodes.len()];
@@ -140,15 +143,16 @@ impl<'p> Line<'p> {
             first,
             outputs,
             register: vec![None; nodes.len()],
-            registers: Registers::new(shape.registers()),
+            registers: Registers::new(shape.registers(), shape.further()),
             slot: vec![None; nodes.len()],
             free_slots: Vec::new(),
             narrow: 0,
+            spills: Cell::new(0),
         }
     }
 
     /// The assembler with the whole code.
-    fn code(mut self) -> Assembler {
+    fn code(mut self) -> A {
         for place in 0..self.nodes.len() {
             self.step(place);
             // without masks, a narrow row's store is right once the next row is stored: so all of the square, or none
@@ -157,6 +161,7 @@ impl<'p> Line<'p> {
                 self.cut();
             }
         }
+        self.assembler.tally().spills += self.spills.get();
         self.assembler
     }
 
@@ -175,7 +180,7 @@ impl<'p> Line<'p> {
     }
 
     /// The memory of a value that is in no register.
-    fn in_memory(&self, value: Value) -> Operand {
+    pub fn in_memory(&self, value: Value) -> Operand {
         let width = self.shape.width();
         match (self.nodes[value as usize], self.slot[value as usize]) {
             (Node::Constant(_), _) => {
@@ -184,19 +189,22 @@ impl<'p> Line<'p> {
             }
             (Node::Input(SINES, index), _) => Operand::Lanes(self.assembler.frame(), index as usize * width),
             (Node::Input(array, index), _) => Operand::Lanes(array as usize, index as usize * self.places.stride),
-            (_, Some(slot)) => Operand::Lanes(self.assembler.frame(), slot * width),
+            (_, Some(slot)) => {
+                self.spills.set(self.spills.get() + 1);
+                Operand::Lanes(self.assembler.frame(), slot * width)
+            }
             (_, None) => unreachable!("value {value} was lost"),
         }
     }
 
     /// The value's register, or its memory.
-    fn operand(&self, value: Value) -> Operand {
+    pub fn operand(&self, value: Value) -> Operand {
         self.register[value as usize].map_or_else(|| self.in_memory(value), Operand::Register)
     }
 
     /// A register for a new value: a free one, or the one whose value is needed last; values that need not be stored
     /// are preferred.
-    fn take(&mut self, here: usize, pinned: &mut Pinned) -> Register {
+    pub fn take(&mut self, here: usize, pinned: &mut Pinned) -> Register {
         let (register, evicted) = self.registers.choose(here, *pinned);
         if let Some(value) = evicted {
             self.put_aside(register, value);
@@ -216,12 +224,13 @@ impl<'p> Line<'p> {
                 self.slots - 1
             });
             self.slot[v] = Some(slot);
+            self.spills.set(self.spills.get() + 1);
             self.assembler.store(self.assembler.frame(), slot * self.shape.width(), register);
         }
     }
 
     /// Puts the value in a register; a loaded value stays there if it is needed again.
-    fn in_register(&mut self, here: usize, value: Value, pinned: &mut Pinned) -> Register {
+    pub fn in_register(&mut self, here: usize, value: Value, pinned: &mut Pinned) -> Register {
         if let Some(register) = self.register[value as usize] {
             return register;
         }
@@ -240,7 +249,7 @@ impl<'p> Line<'p> {
     }
 
     /// The register of a value that is no longer needed.
-    fn dying(&self, value: Value) -> Option<Register> {
+    pub fn dying(&self, value: Value) -> Option<Register> {
         self.register[value as usize].filter(|_| self.next_need(value) == NEVER)
     }
 
@@ -267,7 +276,7 @@ impl<'p> Line<'p> {
         let target = match *operands {
             [a] => self.unary(here, operation, a, &mut pinned),
             [a, b] => self.binary(here, operation, a, b, &mut pinned),
-            [a, b, c] => self.fused(here, operation, a, b, c, &mut pinned),
+            [a, b, c] => A::fused(self, here, (operation, [a, b, c]), &mut pinned),
             _ => unreachable!("one to three operands"),
         };
         for &v in operands {
@@ -311,63 +320,12 @@ impl<'p> Line<'p> {
         let first = self.in_register(here, a, pinned);
         let second = match self.assembler.takes_memory(operation) {
             true => self.operand(b),
+            false if a == b => Operand::Register(first),
             false => Operand::Register(self.in_register(here, b, pinned)),
         };
         let was_loaded = self.register[a as usize].is_none().then_some(first);
         let target = self.dying(a).or(self.dying(b)).or(was_loaded).unwrap_or_else(|| self.take(here, pinned));
         self.assembler.apply(operation, target, first, second);
-        target
-    }
-
-    /// ± a b ± c overwrites one of its operands: one that is no longer needed, or a copy.
-    fn fused(
-        &mut self,
-        here: usize,
-        operation: Operation,
-        a: Value,
-        b: Value,
-        c: Value,
-        pinned: &mut Pinned,
-    ) -> Register {
-        let is_in_register = |line: &Self, v: Value| line.register[v as usize].is_some();
-        if let Some(target) = self.dying(c) {
-            let (a, b) = if is_in_register(self, a) { (a, b) } else { (b, a) };
-            let first = self.in_register(here, a, pinned);
-            self.assembler.fused_231(operation, target, first, self.operand(b));
-            return target;
-        }
-        // a factor that is no longer needed, or that must be loaded anyway
-        let (a, b) = if self.dying(a).is_some() || self.dying(b).is_none() && !is_in_register(self, a) {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        if self.dying(a).is_some() || !is_in_register(self, a) && is_in_register(self, c) {
-            let target = match self.dying(a) {
-                Some(register) => register,
-                None => {
-                    let (from, register) = (self.in_memory(a), self.take(here, pinned));
-                    self.assembler.load(register, from);
-                    register
-                }
-            };
-            if a == b {
-                self.assembler.fused_213(operation, target, target, self.operand(c));
-            } else if is_in_register(self, c) && !is_in_register(self, b) {
-                let third = self.operand(c);
-                let Operand::Register(third) = third else { unreachable!("in a register") };
-                self.assembler.fused_132(operation, target, third, self.operand(b));
-            } else {
-                let second = self.in_register(here, b, pinned);
-                self.assembler.fused_213(operation, target, second, self.operand(c));
-            }
-            return target;
-        }
-        let (a, b) = if is_in_register(self, a) { (a, b) } else { (b, a) };
-        let first = self.in_register(here, a, pinned);
-        let (from, target) = (self.operand(c), self.take(here, pinned));
-        self.assembler.load(target, from);
-        self.assembler.fused_231(operation, target, first, self.operand(b));
         target
     }
 }

@@ -22,6 +22,10 @@ pub(crate) enum Operation {
     NegMulAdd,
     /// −a b − c.
     NegMulSub,
+    /// −a; this and the next by AArch64 alone, see [`signs`](super::signs).
+    Neg,
+    /// b where the bits of a are set, else c.
+    Select,
     /// Bitwise; likewise the rest.
     And,
     Xor,
@@ -52,8 +56,8 @@ use Operation::*;
 impl Operation {
     pub fn arity(self) -> usize {
         match self {
-            Sqrt | ShiftLeft(_) => 1,
-            MulAdd | MulSub | NegMulAdd | NegMulSub => 3,
+            Sqrt | Neg | ShiftLeft(_) => 1,
+            MulAdd | MulSub | NegMulAdd | NegMulSub | Select => 3,
             _ => 2,
         }
     }
@@ -64,7 +68,7 @@ impl Operation {
 
     /// True if it works on bits, not on numbers.
     pub fn is_of_bits(self) -> bool {
-        matches!(self, And | Xor | SubBits | ShiftLeft(_))
+        matches!(self, And | Xor | SubBits | ShiftLeft(_) | Select)
     }
 
     /// True if it moves numbers from lane to lane.

@@ -15,8 +15,8 @@ pub(crate) struct Lowered {
     /// What is written into tables; see [`by_rows`](super::rows::by_rows).
     pub stores: Vec<Store>,
     /// The code that runs first, on registers of several numbers: the sines and cosines of neighbouring angles of one
-    /// state. Its inputs are [`TOGETHER`] numbers of an array from an entry on; its only output is the array that
-    /// [`SINES`] refers to.
+    /// state, in the shape [`together`](Shape::together). Its inputs are a register of an array from an entry on; its
+    /// only output is the array that [`SINES`] refers to.
     pub before: Option<Box<Lowered>>,
 }
 
@@ -29,22 +29,16 @@ pub(crate) struct Store {
     pub numbers: usize,
 }
 
-/// The number of angles of one state whose sines are computed in one register.
-pub(crate) const TOGETHER: usize = 4;
-
-/// The shape of that register.
-pub(crate) const SHAPE_TOGETHER: Shape = Shape::FourF64;
-
 impl Lowered {
     /// Floating-point operations; a fused multiply-add counts as two.
-    pub fn flops(&self) -> usize {
+    pub fn flops(&self, shape: Shape) -> usize {
         let work = |node: &Node| match node {
             Node::Apply(operation, _) if !operation.is_of_bits() && !operation.moves_lanes() => {
                 operation.arity().saturating_sub(1).max(1)
             }
             _ => 0,
         };
-        let before = self.before.as_ref().map_or(0, |before| TOGETHER * before.flops());
+        let before = self.before.as_ref().map_or(0, |before| shape.together().lanes() * before.flops(shape));
         before + self.nodes.iter().map(work).sum::<usize>()
     }
 }
@@ -104,7 +98,8 @@ impl Builder {
 /// smallest entry and the sum of its entries, which is not finite if an entry is not.
 pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option<Lowered> {
     let is_f64 = shape.is_f64();
-    let windows = if shape.is_scalar() && is_f64 { windows(program) } else { Vec::new() };
+    let width = shape.together().lanes() as u32;
+    let windows = if shape.is_scalar() && is_f64 { windows(program, width) } else { Vec::new() };
     let mut builder = Builder { is_f64, nodes: Vec::with_capacity(2 * program.steps.len()), constants: HashMap::new() };
     let mut place: Vec<Value> = Vec::with_capacity(program.steps.len());
     let mut angles: HashMap<u32, (Value, Value)> = HashMap::new();
@@ -138,9 +133,11 @@ pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option
                             None => {
                                 squares = builder.apply(Operation::MulAdd, [a, a, squares]);
                                 let both = match program.steps[angle as usize] {
-                                    Step::Input(array, index) if let Some(sin) = together(&windows, array, index) => {
+                                    Step::Input(array, index)
+                                        if let Some(sin) = together(&windows, width, array, index) =>
+                                    {
                                         let entry = |entry: u32| Node::Input(SINES, entry);
-                                        (builder.push(entry(sin)), builder.push(entry(sin + TOGETHER as u32)))
+                                        (builder.push(entry(sin)), builder.push(entry(sin + width)))
                                     }
                                     _ => sin_cos.at(&mut builder, a),
                                 };
@@ -176,7 +173,7 @@ pub(crate) fn lower(program: &Program, shape: Shape, condensed: usize) -> Option
 type Window = (u32, u32);
 
 /// Windows of neighbouring inputs that cover all angles, except in arrays shorter than a register.
-fn windows(program: &Program) -> Vec<Window> {
+fn windows(program: &Program, width: u32) -> Vec<Window> {
     let mut angles: Vec<Window> = program
         .steps
         .iter()
@@ -191,19 +188,19 @@ fn windows(program: &Program) -> Vec<Window> {
     angles.sort_unstable();
     let mut windows: Vec<Window> = Vec::new();
     for (array, index) in angles {
-        let length = program.inputs[array as usize].length;
-        if length >= TOGETHER && together(&windows, array, index).is_none() {
-            windows.push((array, index.min((length - TOGETHER) as u32)));
+        let length = program.inputs[array as usize].length as u32;
+        if length >= width && together(&windows, width, array, index).is_none() {
+            windows.push((array, index.min(length - width)));
         }
     }
     windows
 }
 
-/// The index of an angle's sine; its cosine is `TOGETHER` numbers further on.
-fn together(windows: &[Window], array: u32, index: u32) -> Option<u32> {
-    let of = |&(its, first): &Window| its == array && (first..first + TOGETHER as u32).contains(&index);
+/// The index of an angle's sine; its cosine is a register's width further on.
+fn together(windows: &[Window], width: u32, array: u32, index: u32) -> Option<u32> {
+    let of = |&(its, first): &Window| its == array && (first..first + width).contains(&index);
     let k = windows.iter().position(of)?;
-    Some((2 * k * TOGETHER) as u32 + index - windows[k].1)
+    Some(2 * k as u32 * width + index - windows[k].1)
 }
 
 fn sines(windows: &[Window], sin_cos: &SinCos) -> Lowered {

@@ -1,7 +1,7 @@
 //! Programs as machine code.
 
+mod aarch64;
 mod allocate;
-mod assembler;
 mod cache;
 mod executable;
 mod instruction;
@@ -12,17 +12,21 @@ mod registers;
 mod rows;
 mod segments;
 mod shape;
+mod signs;
 mod sin_cos;
+mod target;
+mod x86_64;
 
-pub use assembler::MOST_ARRAYS;
 pub(crate) use instruction::{Node, Operation};
 pub use rows::Extent;
 pub use shape::Shape;
 pub(crate) use sin_cos::SinCos;
+pub use target::{MOST_ARRAYS, Tally};
 
 use crate::program::{Array, Program};
 use executable::Executable;
 use mozzi::scalar::Float;
+use shape::Machine;
 
 /// The reason why there is no machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +35,11 @@ pub enum Refusal {
     NotAsked,
     /// The calls so far had too few states to pay for it.
     NotYet,
-    /// The processor lacks the instructions, or is not x86-64.
+    /// The processor lacks the instructions, or is neither x86-64 nor AArch64.
     Processor,
+    /// The system is one on which machine code for this processor was never made executable: on AArch64, all but Linux,
+    /// Android and macOS.
+    System,
     /// The program has a function without machine code (tanh), or more arrays than there are registers for their
     /// addresses.
     Program,
@@ -48,6 +55,7 @@ impl std::fmt::Display for Refusal {
             Refusal::NotAsked => "machine code was not requested",
             Refusal::NotYet => "too few states so far to pay for machine code",
             Refusal::Processor => "the processor has not the instructions",
+            Refusal::System => "on AArch64, machine code is for Linux, Android and macOS",
             Refusal::Program => "the program has a function without machine code, or too many arrays",
             Refusal::Long => "the code would be longer than the caches serve",
             Refusal::Memory => "the system grants no executable memory",
@@ -75,7 +83,7 @@ pub struct Kernel {
     form: Form,
     angle_limit: f64,
     code_bytes: usize,
-    instructions: usize,
+    tally: Tally,
     frame_bytes: usize,
     flops: usize,
 }
@@ -104,37 +112,13 @@ impl Kernel {
 
     /// Likewise, and long code is cut into [`segments`] or not.
     fn cut_if(cuts: bool, program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Self, Refusal> {
-        assert!(form == Form::Blocks || !shape.is_scalar(), "one state has no rows");
-        if !shape.is_supported() {
-            return Err(Refusal::Processor);
-        }
-        let lowered = lower::lower(program, shape, condensed).ok_or(Refusal::Program)?;
-        let flops = lowered.flops();
-        let widths: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
-        let (inputs, own) = (widths.len(), condensed.min(program.outputs().len()));
-        let mut extents = Vec::new();
-        extents.extend(widths.iter().map(|&width| match form {
-            Form::Blocks => Extent::of_block(width, shape),
-            Form::Rows => Extent::of_input(width, shape),
-        }));
-        extents.extend(lowered.outputs.iter().enumerate().map(|(k, output)| match form {
-            Form::Rows if k < own => Extent::of_output(output.len(), shape),
-            _ => Extent::of_block(output.len(), shape),
-        }));
-        let pays = shape.repeats() && lowered.nodes.len() <= order::LONGEST;
-        let lowered = if form == Form::Rows { rows::by_rows(lowered, shape, &widths, own) } else { lowered };
-        let lowered = if pays { order::ordered(lowered) } else { lowered };
-        let segment = if cuts { segments::longest(lowered.nodes.len()) } else { usize::MAX };
-        let arrays = allocate::Arrays { extents: &extents, inputs, form, segment };
-        let code = allocate::allocate(shape, &lowered, arrays)?;
-        if code.bytes.len() > shape.longest_code() {
-            return Err(Refusal::Long);
-        }
+        shape.check()?;
+        let Made { code, extents, inputs, flops } = made(cuts, program, shape, form, condensed)?;
         let largest = if shape.is_f64() { f64::LARGEST } else { f32::LARGEST.into() };
         let executable = Executable::new(shape, &code, extents, inputs).ok_or(Refusal::Memory)?;
-        let (code_bytes, instructions, frame_bytes) = (code.bytes.len(), code.instructions, code.frame);
+        let (code_bytes, tally, frame_bytes) = (code.bytes.len(), code.tally, code.frame);
         let angle_limit = largest * largest;
-        Ok(Kernel { executable, shape, form, angle_limit, code_bytes, instructions, frame_bytes, flops })
+        Ok(Kernel { executable, shape, form, angle_limit, code_bytes, tally, frame_bytes, flops })
     }
 
     /// Its instruction set and number type.
@@ -154,7 +138,12 @@ impl Kernel {
 
     /// The number of instructions, including loads and stores.
     pub fn instructions(&self) -> usize {
-        self.instructions
+        self.tally.instructions
+    }
+
+    /// Its instructions by kind.
+    pub fn tally(&self) -> Tally {
+        self.tally
     }
 
     /// Floating-point operations per state, including those of the sines; a fused multiply-add counts as two.
@@ -213,5 +202,72 @@ impl Kernel {
     #[inline(always)]
     pub fn is_exact<S: Float>(&self, squares: S) -> bool {
         squares <= S::from_f64(self.angle_limit)
+    }
+}
+
+/// The machine code of a program for any processor, not only this one: to be counted or disassembled, not to be run.
+#[derive(Clone, Debug)]
+pub struct Listing {
+    /// The code; functions of segments one after the other.
+    pub code: Vec<u8>,
+    /// The instructions of one run, by kind.
+    pub tally: Tally,
+    /// Stack memory for spilled registers, in bytes.
+    pub frame_bytes: usize,
+}
+
+impl Listing {
+    /// As [`Kernel::condensing`], whatever the processor.
+    ///
+    /// # Errors
+    /// As [`Kernel::new`], but for the processor.
+    ///
+    /// # Panics
+    /// As [`Kernel::condensing`].
+    pub fn new(program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Self, Refusal> {
+        let Made { code, .. } = made(segments::pay(shape), program, shape, form, condensed)?;
+        Ok(Listing { code: code.bytes, tally: code.tally, frame_bytes: code.frame })
+    }
+}
+
+/// Code before it is placed in executable memory.
+struct Made {
+    code: allocate::Code,
+    extents: Vec<Extent>,
+    inputs: usize,
+    flops: usize,
+}
+
+fn made(cuts: bool, program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Made, Refusal> {
+    assert!(form == Form::Blocks || !shape.is_scalar(), "one state has no rows");
+    let lowered = lower::lower(program, shape, condensed).ok_or(Refusal::Program)?;
+    let flops = lowered.flops(shape);
+    let widths: Vec<usize> = program.inputs().iter().map(|Array { length, .. }| *length).collect();
+    let (inputs, own) = (widths.len(), condensed.min(program.outputs().len()));
+    let mut extents = Vec::new();
+    extents.extend(widths.iter().map(|&width| match form {
+        Form::Blocks => Extent::of_block(width, shape),
+        Form::Rows => Extent::of_input(width, shape),
+    }));
+    extents.extend(lowered.outputs.iter().enumerate().map(|(k, output)| match form {
+        Form::Rows if k < own => Extent::of_output(output.len(), shape),
+        _ => Extent::of_block(output.len(), shape),
+    }));
+    let lowered = match shape.machine() {
+        Machine::X86_64 => lowered,
+        Machine::AArch64 => signs::moved_out(lowered, shape),
+    };
+    let pays = shape.is_ordered() && lowered.nodes.len() <= order::LONGEST;
+    let lowered = if form == Form::Rows { rows::by_rows(lowered, shape, &widths, own) } else { lowered };
+    let lowered = if pays { order::ordered(lowered, shape) } else { lowered };
+    let segment = if cuts { segments::longest(lowered.nodes.len()) } else { usize::MAX };
+    let arrays = allocate::Arrays { extents: &extents, inputs, form, segment };
+    let code = match shape.machine() {
+        Machine::X86_64 => allocate::allocate::<x86_64::X86>(shape, &lowered, arrays)?,
+        Machine::AArch64 => allocate::allocate::<aarch64::Arm>(shape, &lowered, arrays)?,
+    };
+    match code.bytes.len() > shape.longest_code() {
+        true => Err(Refusal::Long),
+        false => Ok(Made { code, extents, inputs, flops }),
     }
 }

@@ -8,6 +8,7 @@
 
 use super::instruction::{Node, Operation, Value};
 use super::lower::{Lowered, Store};
+use super::shape::Shape;
 
 /// The longest program that is ordered.
 pub(crate) const LONGEST: usize = 6000;
@@ -15,14 +16,9 @@ pub(crate) const LONGEST: usize = 6000;
 /// Instructions among which the next is chosen, in recorded order.
 const WINDOW: usize = 128;
 
-/// Values that may be alive: the registers; twice as many in a long program, whose values are in memory anyway.
-fn most_alive(nodes: usize) -> usize {
-    if nodes > 2500 { 64 } else { 32 }
-}
-
 /// The same program in this order.
-pub(crate) fn ordered(lowered: Lowered) -> Lowered {
-    let order = order(&lowered.nodes);
+pub(crate) fn ordered(lowered: Lowered, shape: Shape) -> Lowered {
+    let order = order(&lowered.nodes, shape.most_alive(lowered.nodes.len()));
     let mut place = vec![0; order.len()];
     for (new, &old) in order.iter().enumerate() {
         place[old as usize] = new as Value;
@@ -48,19 +44,19 @@ fn cost(operation: Operation) -> (usize, u32) {
     match operation {
         Operation::Mul | Operation::MulAdd | Operation::MulSub | Operation::NegMulAdd | Operation::NegMulSub => (0, 4),
         Operation::Div | Operation::Sqrt => (0, 13),
-        Operation::Add | Operation::Sub | Operation::Min | Operation::Max => (1, 3),
-        Operation::And | Operation::Xor | Operation::SubBits | Operation::ShiftLeft(_) => (1, 1),
+        Operation::Add | Operation::Sub | Operation::Min | Operation::Max | Operation::Neg => (1, 3),
+        Operation::And | Operation::Xor | Operation::SubBits | Operation::ShiftLeft(_) | Operation::Select => (1, 1),
         Operation::Interleave(..) | Operation::Pick(_) => (1, 3),
     }
 }
 
-fn order(nodes: &[Node]) -> Vec<Value> {
+fn order(nodes: &[Node], most: usize) -> Vec<Value> {
     const UNKNOWN: u32 = u32::MAX;
     let mut uses = vec![0_u32; nodes.len()];
     nodes.iter().flat_map(Node::operands).for_each(|&operand| uses[operand as usize] += 1);
     let mut known_at = vec![UNKNOWN; nodes.len()];
     let (mut order, mut window) = (Vec::with_capacity(nodes.len()), Vec::with_capacity(WINDOW));
-    let (mut next, mut now, mut alive, most) = (0, 0, 0_usize, most_alive(nodes.len()));
+    let (mut next, mut now, mut alive) = (0, 0, 0_usize);
     loop {
         while window.len() < WINDOW && next < nodes.len() {
             match nodes[next] {
@@ -122,12 +118,13 @@ mod tests {
             }
         }
         let outputs = vec![vec![7, 13]];
-        let found = ordered(Lowered { nodes: nodes.clone(), outputs, stores: Vec::new(), before: None });
+        let found =
+            ordered(Lowered { nodes: nodes.clone(), outputs, stores: Vec::new(), before: None }, Shape::EightF64);
         assert_eq!(found.nodes.len(), nodes.len());
         for (place, node) in found.nodes.iter().enumerate() {
             assert!(node.operands().iter().all(|&operand| (operand as usize) < place));
         }
-        let order = order(&nodes);
+        let order = order(&nodes, 32);
         assert_eq!(order, [0, 1, 2, 8, 3, 9, 4, 10, 5, 11, 6, 12, 7, 13]);
         assert_eq!(found.outputs, [[12, 13]]);
     }
@@ -142,7 +139,7 @@ mod tests {
             nodes.push(apply(Operation::Add, [sum, k, 0]));
             sum = nodes.len() as Value - 1;
         }
-        let order = order(&nodes);
+        let order = order(&nodes, 32);
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..nodes.len() as Value).collect::<Vec<_>>());

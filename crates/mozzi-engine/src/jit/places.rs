@@ -1,13 +1,13 @@
 //! Where straight-line code finds its operands in memory.
 
-use super::assembler::Memory;
 use super::instruction::Node;
 use super::lower::Lowered;
-use super::shape::{Encoding, Shape};
+use super::shape::Shape;
+use super::target::Memory;
 
 /// For each constant node, its byte offset in the pool.
 pub(crate) fn put_constants(shape: Shape, lowered: &Lowered, pool: &mut Vec<u8>) -> Vec<usize> {
-    let repeat = if shape.encoding() == Encoding::Vex { shape.lanes() } else { 1 };
+    let repeat = if shape.repeats() { 1 } else { shape.lanes() };
     let put = |node: &Node| {
         let byte = pool.len();
         if let Node::Constant(bits) = node {

@@ -1,7 +1,7 @@
 //! What the registers hold, and which is freed for a new value.
 
-use super::assembler::Register;
 use super::instruction::Value;
+use super::target::Register;
 
 /// The need of a value that nothing needs any more.
 pub(crate) const NEVER: u32 = u32::MAX;
@@ -21,13 +21,15 @@ pub(crate) struct Registers {
     need: [u32; MOST],
     /// The value is in memory, too.
     is_kept: [bool; MOST],
+    /// How much further away, in halves, the need of a value that is in memory may seem.
+    further: u64,
 }
 
 impl Registers {
     /// So many, all free.
-    pub fn new(count: usize) -> Self {
+    pub fn new(count: usize, further: u64) -> Self {
         let free = ((1_u64 << count) - 1) as u32;
-        Registers { count, free, value: [0; MOST], need: [0; MOST], is_kept: [false; MOST] }
+        Registers { count, free, value: [0; MOST], need: [0; MOST], is_kept: [false; MOST], further }
     }
 
     pub fn hold(&mut self, register: Register, value: Value, need: u32, is_kept: bool) {
@@ -61,8 +63,9 @@ impl Registers {
         let mut best = None;
         for place in 0..self.count {
             let need = self.need[place];
-            let bonus = if self.is_kept[place] { need.saturating_sub(here as u32) / 2 } else { 0 };
-            let score = u64::from(need) + u64::from(bonus);
+            let away = u64::from(need.saturating_sub(here as u32));
+            let bonus = if self.is_kept[place] { away * self.further / 2 } else { 0 };
+            let score = u64::from(need) + bonus;
             let key = score * MOST as u64 + (MOST - 1 - place) as u64;
             best = best.max((pinned >> place & 1 == 0).then_some(key));
         }
@@ -77,7 +80,7 @@ mod tests {
 
     #[test]
     fn free_ones_first_then_what_is_needed_last() {
-        let mut registers = Registers::new(3);
+        let mut registers = Registers::new(3, 1);
         assert_eq!(registers.choose(0, 0b001), (1, None));
         registers.hold(0, 10, 8, false);
         registers.hold(1, 11, 20, false);

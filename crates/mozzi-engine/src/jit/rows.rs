@@ -35,11 +35,11 @@ impl Extent {
         Extent { size: lanes * width + beyond, step: lanes * width }
     }
 
-    /// Likewise, to be written: with AVX-512, nothing is written beyond a row.
+    /// Likewise, to be written: but by AVX2, nothing is written beyond a row.
     pub(crate) fn of_output(width: usize, shape: Shape) -> Self {
         match shape.encoding() {
             Encoding::Vex => Self::of_input(width, shape),
-            Encoding::Evex => Self::of_block(width, shape),
+            Encoding::Evex | Encoding::Neon => Self::of_block(width, shape),
         }
     }
 }
@@ -160,6 +160,7 @@ impl Line {
         let of = |k: usize| groups.iter().map(|group| group[k]).collect::<Vec<_>>();
         let mut result = vec![0; square.len()];
         match groups.len() {
+            1 => return groups.concat(),
             2 => {
                 for (j, places) in [0x20, 0x31].into_iter().enumerate() {
                     for k in 0..grain {

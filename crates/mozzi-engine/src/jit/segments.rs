@@ -19,7 +19,7 @@ const SLOT: usize = 512;
 
 /// True if long code of this shape is to be cut: several states, where fetching takes longer than the arithmetic.
 pub(crate) fn pay(shape: Shape) -> bool {
-    !shape.is_scalar() && (shape.encoding() == Encoding::Vex || has_full_width())
+    !shape.is_scalar() && (shape.encoding() != Encoding::Evex || has_full_width())
 }
 
 /// The bytes after which a segment of code of so many nodes ends: segments are equally long.
@@ -57,7 +57,7 @@ mod tests {
         assert_eq!(longest(WHOLE / NODE), usize::MAX);
         assert_eq!(longest(5000), 20_000);
         assert_eq!(longest(LONGEST / NODE * 3), LONGEST);
-        assert_eq!(Shape::ALL.map(group), [64, 16, 128, 16, 8, 8, 64]);
+        assert_eq!(Shape::ALL.map(group), [64, 16, 128, 16, 8, 8, 64, 64, 32, 128, 32]);
     }
 
     /// Whole and cut, every number has the same bits, in groups that are full or not.

@@ -57,7 +57,7 @@ impl<T: Number> Batch<T> {
         Batch {
             model: Arc::new(model.clone()),
             constants: Arc::new(model.map(T::from_f64)),
-            shape: T::shape().ok_or(Refusal::Processor),
+            shape: T::shape().ok_or_else(T::refusal),
             threads: Threads::All,
             sticks: true,
             pool: Pool::default(),

@@ -1,12 +1,12 @@
 //! The number types of tables.
 
-use crate::{Error, Shape};
+use crate::{Error, Refusal, Shape};
 use mozzi::scalar::{Bits, Float};
 
 /// `f64` or `f32`.
 pub trait Number: Float + Bits<Number = Self> + Into<f64> + Send + Sync + 'static {
     /// The shapes of machine code for several states, the widest first.
-    const SHAPES: [Shape; 2];
+    const SHAPES: [Shape; 3];
 
     /// These numbers, if they are `f64`.
     fn as_f64(numbers: &[Self]) -> Option<&[f64]>;
@@ -17,6 +17,13 @@ pub trait Number: Float + Bits<Number = Self> + Into<f64> + Send + Sync + 'stati
     /// The widest shape that this processor runs.
     fn shape() -> Option<Shape> {
         Self::SHAPES.into_iter().find(|shape| shape.is_supported())
+    }
+
+    /// The reason why there is none: that of the last shape which has one of its own.
+    #[doc(hidden)]
+    fn refusal() -> Refusal {
+        let reasons = Self::SHAPES.into_iter().filter_map(|shape| shape.check().err());
+        reasons.fold(Refusal::Processor, |first, next| if next == Refusal::Processor { first } else { next })
     }
 
     /// This shape, if it is of this number and the processor runs it.
@@ -32,7 +39,7 @@ pub trait Number: Float + Bits<Number = Self> + Into<f64> + Send + Sync + 'stati
 }
 
 impl Number for f64 {
-    const SHAPES: [Shape; 2] = [Shape::EightF64, Shape::FourF64];
+    const SHAPES: [Shape; 3] = [Shape::EightF64, Shape::FourF64, Shape::TwoF64];
 
     #[inline(always)]
     fn as_f64(numbers: &[f64]) -> Option<&[f64]> {
@@ -46,7 +53,7 @@ impl Number for f64 {
 }
 
 impl Number for f32 {
-    const SHAPES: [Shape; 2] = [Shape::SixteenF32, Shape::EightF32];
+    const SHAPES: [Shape; 3] = [Shape::SixteenF32, Shape::EightF32, Shape::FourF32];
 
     #[inline(always)]
     fn as_f64(_: &[f32]) -> Option<&[f64]> {

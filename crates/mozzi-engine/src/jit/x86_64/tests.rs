@@ -1,12 +1,18 @@
 //! Compares each form with a disassembler.
 
 use super::*;
+use crate::jit::shape::Machine;
+use crate::jit::target::LARGEST_ON_STACK;
 use iced_x86::Register as Named;
 use iced_x86::{Code, Decoder, DecoderOptions, Instruction, Mnemonic, OpKind};
 
 const BYTES: usize = 1 << 16;
 /// Low, high, and with the fifth bit set.
 const REGISTERS: [Register; 8] = [0, 3, 7, 8, 15, 16, 23, 31];
+
+fn ours() -> impl Iterator<Item = Shape> {
+    Shape::ALL.into_iter().filter(|shape| shape.machine() == Machine::X86_64)
+}
 
 fn decoded(bytes: &[u8]) -> Vec<Instruction> {
     Decoder::new(64, bytes, DecoderOptions::NONE).into_iter().collect()
@@ -39,12 +45,12 @@ fn places(shape: Shape) -> impl Iterator<Item = (Memory, usize)> {
     })
 }
 
-fn assembler(shape: Shape) -> Assembler {
-    Assembler::new(shape, &[BYTES; MOST_ARRAYS - 1])
+fn assembler(shape: Shape) -> X86 {
+    X86::new(shape, &[BYTES; MOST_ARRAYS - 1])
 }
 
 /// One instruction, decoded, with the mnemonic that is expected.
-fn check(shape: Shape, mnemonic: &str, write: impl FnOnce(&mut Assembler)) -> Instruction {
+fn check(shape: Shape, mnemonic: &str, write: impl FnOnce(&mut X86)) -> Instruction {
     let mut assembler = assembler(shape);
     write(&mut assembler);
     let found = decoded(&assembler.body);
@@ -95,7 +101,7 @@ fn suffix(shape: Shape) -> &'static str {
 
 #[test]
 fn operations_on_two_numbers() {
-    for shape in Shape::ALL {
+    for shape in ours() {
         let (letter, evex) = (if shape.is_f64() { "q" } else { "d" }, shape.encoding() == Encoding::Evex);
         let numbers = |name: &str| format!("v{name}{}", suffix(shape));
         let table = [
@@ -125,7 +131,7 @@ fn operations_on_two_numbers() {
 
 #[test]
 fn operations_on_one_number() {
-    for shape in Shape::ALL {
+    for shape in ours() {
         for (target, from) in registers(shape).zip(registers(shape).cycle().skip(3)) {
             let (to, register) = (named(shape, target), Operand::Register(from));
             let root =
@@ -142,7 +148,7 @@ fn operations_on_one_number() {
 
 #[test]
 fn moves_between_lanes() {
-    for shape in Shape::ALL.into_iter().filter(|shape| !shape.is_scalar()) {
+    for shape in ours().filter(|shape| !shape.is_scalar()) {
         let evex = shape.encoding() == Encoding::Evex;
         let pick = match (evex, shape.is_f64()) {
             (false, _) => "vperm2f128",
@@ -178,7 +184,7 @@ fn moves_between_lanes() {
 
 #[test]
 fn parts_of_registers_are_stored_under_masks() {
-    for shape in Shape::ALL.into_iter().filter(|shape| shape.repeats()) {
+    for shape in ours().filter(|shape| shape.repeats()) {
         let moves = format!("vmovu{}", suffix(shape));
         for (from, place) in registers(shape).cycle().zip(places(shape)) {
             for numbers in 1..shape.lanes() {
@@ -189,7 +195,7 @@ fn parts_of_registers_are_stored_under_masks() {
             }
         }
         // up to the array's end and no further; the masks are set at the beginning
-        let mut assembler = Assembler::new(shape, &[3 * shape.number()]);
+        let mut assembler = X86::new(shape, &[3 * shape.number()]);
         assembler.store_part(0, 0, 1, 3);
         assembler.store_part(0, 0, 1, 2);
         assembler.store_part(0, shape.number(), 1, 2);
@@ -208,7 +214,7 @@ fn parts_of_registers_are_stored_under_masks() {
 #[test]
 #[should_panic(expected = "byte 16 of array 0")]
 fn masks_end_within_the_array() {
-    Assembler::new(Shape::EightF64, &[32]).store_part(0, 16, 0, 3);
+    X86::new(Shape::EightF64, &[32]).store_part(0, 16, 0, 3);
 }
 
 #[test]
@@ -219,10 +225,9 @@ fn fused_products() {
         (Operation::NegMulAdd, "vfnmadd"),
         (Operation::NegMulSub, "vfnmsub"),
     ];
-    type Write = fn(&mut Assembler, Operation, Register, Register, Operand);
-    let orders: [(&str, Write); 3] =
-        [("231", Assembler::fused_231), ("213", Assembler::fused_213), ("132", Assembler::fused_132)];
-    for shape in Shape::ALL {
+    type Write = fn(&mut X86, Operation, Register, Register, Operand);
+    let orders: [(&str, Write); 3] = [("231", X86::fused_231), ("213", X86::fused_213), ("132", X86::fused_132)];
+    for shape in ours() {
         for ((operation, name), (order, write)) in operations.into_iter().flat_map(|o| orders.map(|w| (o, w))) {
             for last in last_operands(shape, true) {
                 for (target, a) in registers(shape).zip(registers(shape).cycle().skip(3)) {
@@ -239,7 +244,7 @@ fn fused_products() {
 
 #[test]
 fn loads_and_stores() {
-    for shape in Shape::ALL {
+    for shape in ours() {
         let moves =
             if shape.is_scalar() { format!("vmov{}", suffix(shape)) } else { format!("vmovu{}", suffix(shape)) };
         let copies = if shape.is_f64() { "vmovapd" } else { "vmovaps" };
@@ -271,7 +276,7 @@ fn a_function_keeps_what_is_its_callers() {
         for (frame, repeats) in
             [0, 64, 5000, 40_000, 100_000].into_iter().flat_map(|frame| [(frame, false), (frame, true)])
         {
-            let mut assembler = Assembler::new(Shape::EightF64, &vec![64; arrays]);
+            let mut assembler = X86::new(Shape::EightF64, &vec![64; arrays]);
             let (own, mut expected) = (assembler.frame(), Vec::new());
             if frame > 0 {
                 assembler.store(own, frame - 64, 1);
@@ -355,11 +360,11 @@ fn a_function_keeps_what_is_its_callers() {
 #[test]
 #[should_panic(expected = "byte 8 of array 0")]
 fn nothing_beyond_an_array_is_written() {
-    Assembler::new(Shape::OneF64, &[8]).store(0, 8, 0);
+    X86::new(Shape::OneF64, &[8]).store(0, 8, 0);
 }
 
 #[test]
 #[should_panic(expected = "no such register")]
 fn avx2_has_sixteen_registers() {
-    Assembler::new(Shape::OneF64, &[8]).load(16, Operand::Lanes(0, 0));
+    X86::new(Shape::OneF64, &[8]).load(16, Operand::Lanes(0, 0));
 }

@@ -1,44 +1,20 @@
 //! Encodes instructions as bytes: the forms that programs need, of x86-64 with VEX (AVX2, FMA) and with EVEX (AVX-512)
 //! prefixes.
-//!
-//! The assembler makes machine code memory-safe: it knows the length in bytes of every array, and emits no instruction
-//! that reads or writes beyond it, for any input.
 
 mod function;
+mod fused;
 #[cfg(test)]
 mod tests;
 
-use super::instruction::{Grain, Half, Operation};
+use super::allocate::Line;
+use super::instruction::{Grain, Half, Operation, Value};
+use super::registers::Pinned;
 use super::shape::{Encoding, Shape};
-
-/// A vector register.
-pub(crate) type Register = u8;
-
-/// An array in memory, by its number in the order of [`Assembler::new`].
-pub(crate) type Memory = usize;
-
-/// Where an instruction's last operand is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Operand {
-    Register(Register),
-    /// A register's lanes, at this byte offset.
-    Lanes(Memory, usize),
-    /// One number broadcast to all lanes, at this byte offset: with EVEX anywhere, else only in loads of several lanes.
-    Repeated(Memory, usize),
-}
+use super::target::{Assembler, MOST_ARRAYS, Memory, Operand, Register, Tally};
 
 /// General registers for the arrays' addresses; rdi, which passes them, is the last of those that need not be saved.
 /// `rsp` and `r12` are left out: as base registers they need another encoding.
-const BASES: [u8; 13] = [0, 1, 2, 6, 8, 9, 10, 11, 7, 3, 13, 14, 15];
-
-/// The largest number of arrays, including constants and spilled registers.
-pub const MOST_ARRAYS: usize = BASES.len();
-
-/// The largest frame in bytes.
-pub(crate) const LARGEST_FRAME: usize = 1 << 20;
-
-/// The largest frame on the stack, far less than a thread's; the caller provides a larger one, as the last address.
-pub(crate) const LARGEST_ON_STACK: usize = 64 << 10;
+const BASES: [u8; MOST_ARRAYS] = [0, 1, 2, 6, 8, 9, 10, 11, 7, 3, 13, 14, 15];
 
 /// Opcode map, mandatory prefix (0 none, 1 66, 2 F3, 3 F2), the bit W, opcode.
 #[derive(Clone, Copy)]
@@ -55,7 +31,7 @@ impl Form {
     }
 }
 
-pub(crate) struct Assembler {
+pub(crate) struct X86 {
     shape: Shape,
     /// The length of each array in bytes.
     sizes: Vec<usize>,
@@ -64,10 +40,13 @@ pub(crate) struct Assembler {
     body: Vec<u8>,
     /// Where the body's segments begin, but for the first.
     cuts: Vec<usize>,
-    instructions: usize,
+    tally: Tally,
     /// The numbers that each mask lets through, from the register k1 on.
     masks: Vec<usize>,
 }
+
+/// The opcode of stores, which no other form has.
+const STORE: u8 = 0x11;
 
 /// A mask register; 0 is none.
 type Mask = u8;
@@ -75,69 +54,39 @@ type Mask = u8;
 /// The masks that there are.
 const MOST_MASKS: usize = 7;
 
-impl Assembler {
-    /// Code that reads the addresses of all arrays of these sizes in bytes from the list at rdi; after them it has a
-    /// frame of its own, as the last array.
-    pub fn new(shape: Shape, sizes: &[usize]) -> Self {
+impl Assembler for X86 {
+    fn new(shape: Shape, sizes: &[usize]) -> Self {
         assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
         let sizes = [sizes, &[0]].concat();
         let (body, cuts, masks) = (Vec::new(), Vec::new(), Vec::new());
-        Assembler { shape, frame: sizes.len() - 1, sizes, body, cuts, instructions: 0, masks }
+        X86 { shape, frame: sizes.len() - 1, sizes, body, cuts, tally: Tally::default(), masks }
     }
 
-    /// Sets the registers of the following instructions.
-    pub fn set_shape(&mut self, shape: Shape) {
+    fn set_shape(&mut self, shape: Shape) {
         self.shape = shape;
     }
 
-    /// The array of spilled registers.
-    pub fn frame(&self) -> Memory {
+    fn frame(&self) -> Memory {
         self.frame
     }
 
-    /// Begins another segment. Registers are lost between segments, the frame is not.
-    pub fn cut(&mut self) {
-        self.cuts.push(self.body.len());
-    }
-
-    /// The bytes of the last segment.
-    pub fn segment_bytes(&self) -> usize {
-        self.body.len() - self.cuts.last().unwrap_or(&0)
-    }
-
-    pub fn instructions(&self) -> usize {
-        self.instructions
-    }
-
-    pub fn frame_bytes(&self) -> usize {
+    fn frame_bytes(&self) -> usize {
         self.sizes[self.frame]
     }
 
-    fn arithmetic(&self, opcode: u8) -> Form {
-        let prefix = match (self.shape.is_scalar(), self.shape.is_f64()) {
-            (true, true) => 3,
-            (true, false) => 2,
-            (false, true) => 1,
-            (false, false) => 0,
-        };
-        Form { map: 1, prefix, wide: self.is_evex() && self.shape.is_f64(), opcode }
+    fn cut(&mut self) {
+        self.cuts.push(self.body.len());
     }
 
-    fn bits(&self, of_f64: u8, of_f32: u8) -> Form {
-        let opcode = if self.shape.is_f64() { of_f64 } else { of_f32 };
-        Form { map: 1, prefix: 1, wide: self.is_evex() && self.shape.is_f64(), opcode }
+    fn segment_bytes(&self) -> usize {
+        self.body.len() - self.cuts.last().unwrap_or(&0)
     }
 
-    fn fused(&self, opcode: u8) -> Form {
-        Form { map: 2, prefix: 1, wide: self.shape.is_f64(), opcode: opcode + u8::from(self.shape.is_scalar()) }
+    fn tally(&mut self) -> &mut Tally {
+        &mut self.tally
     }
 
-    fn is_evex(&self) -> bool {
-        self.shape.encoding() == Encoding::Evex
-    }
-
-    /// True if the last operand of this operation can be in memory, as lanes or as one number for all.
-    pub fn takes_memory(&self, operation: Operation) -> bool {
+    fn takes_memory(&self, operation: Operation) -> bool {
         match operation {
             Operation::Sqrt | Operation::ShiftLeft(_) => false,
             // a repeated number would be one of 64 bits
@@ -148,8 +97,8 @@ impl Assembler {
         }
     }
 
-    /// target ← operation(a, b); with one operand: operation(b).
-    pub fn apply(&mut self, operation: Operation, target: Register, a: Register, b: Operand) {
+    fn apply(&mut self, operation: Operation, target: Register, a: Register, b: Operand) {
+        self.tally.count(operation);
         let form = match operation {
             Operation::Add => self.arithmetic(0x58),
             Operation::Mul => self.arithmetic(0x59),
@@ -181,32 +130,19 @@ impl Assembler {
             Operation::MulAdd | Operation::MulSub | Operation::NegMulAdd | Operation::NegMulSub => {
                 unreachable!("three operands")
             }
+            Operation::Neg | Operation::Select => unreachable!("of AArch64"),
         };
         // packed square roots have one operand, and the other field must be 0
         let a = if operation == Operation::Sqrt && !self.shape.is_scalar() { 0 } else { a };
         self.instruction(form, target, a, b);
     }
 
-    /// target ← ± (a · c) ± target, where c may be in memory.
-    pub fn fused_231(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
-        let form = self.fused(0xb8 + fused_offset(operation));
-        self.instruction(form, target, a, c);
+    fn fused(line: &mut Line<Self>, here: usize, of: (Operation, [Value; 3]), pinned: &mut Pinned) -> Register {
+        line.fused(here, of, pinned)
     }
 
-    /// target ← ± (a · target) ± c, where c may be in memory.
-    pub fn fused_213(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
-        let form = self.fused(0xa8 + fused_offset(operation));
-        self.instruction(form, target, a, c);
-    }
-
-    /// target ← ± (target · c) ± a, where c may be in memory.
-    pub fn fused_132(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
-        let form = self.fused(0x98 + fused_offset(operation));
-        self.instruction(form, target, a, c);
-    }
-
-    /// target ← the operand.
-    pub fn load(&mut self, target: Register, from: Operand) {
+    fn load(&mut self, target: Register, from: Operand) {
+        self.tally.moves += usize::from(matches!(from, Operand::Register(_)));
         let form = match from {
             Operand::Register(_) => Form { prefix: u8::from(self.shape.is_f64()), ..self.arithmetic(0x28) },
             Operand::Lanes(..) => self.arithmetic(0x10),
@@ -218,16 +154,65 @@ impl Assembler {
         self.instruction(form, target, 0, from);
     }
 
-    /// Memory ← a register's lanes.
-    pub fn store(&mut self, to: Memory, byte: usize, from: Register) {
+    fn store(&mut self, to: Memory, byte: usize, from: Register) {
         self.store_part(to, byte, from, self.shape.lanes());
     }
 
-    /// Memory ← a register's first numbers; without AVX-512, all of them.
-    pub fn store_part(&mut self, to: Memory, byte: usize, from: Register, numbers: usize) {
+    fn store_part(&mut self, to: Memory, byte: usize, from: Register, numbers: usize) {
         let mask = if numbers < self.shape.lanes() && self.is_evex() { self.mask(numbers) } else { 0 };
-        let form = self.arithmetic(0x11);
+        self.tally.stores += 1;
+        let form = self.arithmetic(STORE);
         self.masked(form, from, 0, Operand::Lanes(to, byte), mask);
+    }
+
+    fn finish(self, steps: &[usize]) -> (Vec<u8>, Vec<usize>) {
+        self.functions(steps)
+    }
+}
+
+impl X86 {
+    fn arithmetic(&self, opcode: u8) -> Form {
+        let prefix = match (self.shape.is_scalar(), self.shape.is_f64()) {
+            (true, true) => 3,
+            (true, false) => 2,
+            (false, true) => 1,
+            (false, false) => 0,
+        };
+        Form { map: 1, prefix, wide: self.is_evex() && self.shape.is_f64(), opcode }
+    }
+
+    fn bits(&self, of_f64: u8, of_f32: u8) -> Form {
+        let opcode = if self.shape.is_f64() { of_f64 } else { of_f32 };
+        Form { map: 1, prefix: 1, wide: self.is_evex() && self.shape.is_f64(), opcode }
+    }
+
+    fn product(&self, opcode: u8) -> Form {
+        Form { map: 2, prefix: 1, wide: self.shape.is_f64(), opcode: opcode + u8::from(self.shape.is_scalar()) }
+    }
+
+    fn is_evex(&self) -> bool {
+        self.shape.encoding() == Encoding::Evex
+    }
+
+    /// target ← ± (a · c) ± target, where c may be in memory.
+    pub fn fused_231(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
+        self.tally.count(operation);
+        let form = self.product(0xb8 + fused_offset(operation));
+        self.instruction(form, target, a, c);
+    }
+
+    /// target ← ± (a · target) ± c, where c may be in memory.
+    pub fn fused_213(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
+        self.tally.count(operation);
+        let form = self.product(0xa8 + fused_offset(operation));
+        self.instruction(form, target, a, c);
+    }
+
+    /// target ← ± (target · c) ± a, where c may be in memory.
+    pub fn fused_132(&mut self, operation: Operation, target: Register, a: Register, c: Operand) {
+        self.tally.count(operation);
+        let form = self.product(0x98 + fused_offset(operation));
+        self.instruction(form, target, a, c);
     }
 
     fn mask(&mut self, numbers: usize) -> Mask {
@@ -245,7 +230,7 @@ impl Assembler {
 
     fn masked(&mut self, form: Form, target: Register, a: Register, b: Operand, mask: Mask) {
         assert!(usize::from(target.max(a)) < self.shape.registers(), "no such register");
-        self.instructions += 1;
+        self.tally.instructions += 1;
         let (base, repeated) = match b {
             Operand::Register(register) => {
                 assert!(usize::from(register) < self.shape.registers(), "no such register");
@@ -257,6 +242,7 @@ impl Assembler {
         };
         assert!(self.is_evex() || form.is_broadcast() || !repeated, "AVX2 repeats no operands");
         let is_register = matches!(b, Operand::Register(_));
+        self.tally.loads += usize::from(!is_register && form.opcode != STORE);
         if self.is_evex() {
             self.evex(form, target, a, base, is_register, u8::from(repeated) << 4 | mask);
         } else {

@@ -1,18 +1,19 @@
 //! The function around the code: it saves the caller's registers, takes the arrays' addresses, makes its frame, and
 //! runs the code in a loop, whose number of passes is an argument.
 
-use super::{Assembler, BASES, LARGEST_ON_STACK};
+use super::{BASES, X86};
+use crate::jit::target::{Assembler, LARGEST_ON_STACK};
 
 /// The index of the first register of [`BASES`] that must be saved for the caller.
 const SAVED: usize = 9;
 /// r12 counts the runs.
 const COUNTER: u8 = 12;
 
-impl Assembler {
+impl X86 {
     /// The function of each segment, one after the other, with the places where they begin: rdi → an array of addresses
     /// (System V). With steps in bytes, it runs rsi ≥ 1 times, each array's address a step further every time. Several
     /// segments have a frame for each run, with the last address; a single one has one, on the stack if it is small.
-    pub fn finish(mut self, steps: &[usize]) -> (Vec<u8>, Vec<usize>) {
+    pub fn functions(mut self, steps: &[usize]) -> (Vec<u8>, Vec<usize>) {
         let mut steps = steps.to_vec();
         let is_on_stack = self.cuts.is_empty() && self.frame_bytes() <= LARGEST_ON_STACK;
         if !self.cuts.is_empty() {
