@@ -157,17 +157,22 @@ impl<'a> Model<'a> {
                 Mass::Known(inertia) => sum += inertia,
                 // checks of an unknown mass would only repeat the error
                 Mass::Wrong => place.report("mass"),
-                Mass::Mesh if is_static => self.ignored.mesh(&item),
-                Mass::Mesh => {
+                Mass::Mesh(_) if is_static => self.ignored.mesh(&item),
+                Mass::Mesh(why) => {
                     let help = "give the body an <inertial>, or the geom mass=\"0\"; MuJoCo writes inertias into the file that \
                                 it saves with the compiler's saveinertial";
-                    let message = "is a mesh, whose inertia is needed: mozzi does not read meshes";
-                    cx.findings.add(item.error("mesh_inertia", "mesh", message).help(help));
+                    let message = format!("mesh: its inertia is needed, and is unknown: {why}");
+                    cx.findings.add(item.error("mesh_inertia", "mesh", &message).help(help));
                     place.report("mass");
                 }
             }
         }
-        let inertia = if is_given { given.unwrap_or_else(SpatialInertia::zero) } else { sum };
+        // without a geom that has a mass the given inertia remains
+        let inertia = match given {
+            Some(given) if is_given || sum.mass == 0.0 => given,
+            _ if is_given => SpatialInertia::zero(),
+            _ => sum,
+        };
         self.bounded(inertia)
     }
 

@@ -58,12 +58,14 @@ mod inertial;
 mod joint;
 mod keyframe;
 mod law;
+mod mesh;
 mod option;
 mod orientation;
 mod rotor;
 #[cfg(test)]
 mod schema;
 mod shapes;
+mod shell;
 mod spring;
 mod tree;
 mod vocabulary;
@@ -87,6 +89,7 @@ use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
 use keyframe::Key;
+use mesh::Meshes;
 use mozzi::{Description, SE3};
 use option::Options;
 use shapes::Shapes;
@@ -103,6 +106,7 @@ pub(crate) struct Model<'a> {
     pub compiler: Compiler,
     pub options: Options,
     pub classes: Classes<'a>,
+    pub meshes: Meshes<'a>,
     pub ignored: Ignored,
     pub tree: Tree,
     /// `None` if shapes are not read.
@@ -168,10 +172,10 @@ fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut 
         }
     }
     let pages = Pages::new(pages, includes);
-    read_model(&pages.root("mujoco")?, wanted, cx)
+    read_model(&pages.root("mujoco")?, files, wanted, cx)
 }
 
-fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> {
+fn read_model<'a>(root: &Element<'a>, files: Files<'a>, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     if root.name() != "mujoco" {
         let message =
             format!("the root element is <{}>, expected <mujoco>", crate::urdf::vocabulary::shown(root.written_name()));
@@ -181,14 +185,16 @@ fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> 
     }
     root.check_attributes(&vocabulary::MUJOCO, cx);
     root.check_children(&vocabulary::MUJOCO, cx);
-    let sections: Vec<Element> = root.elements().filter(|child| !child.has_prefix()).collect();
+    let sections: Vec<Element<'a>> = root.elements().filter(|child| !child.has_prefix()).collect();
     let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
 
     // the order of the sections does not matter
+    let (compiler, classes) = (Compiler::read(of("compiler"), cx), Classes::read(of("default"), cx));
     let mut model = Model {
-        compiler: Compiler::read(of("compiler"), cx),
+        compiler,
         options: Options::default(),
-        classes: Classes::read(of("default"), cx),
+        meshes: Meshes::new(&sections, &classes, files, cx),
+        classes,
         ignored: Ignored::default(),
         tree: Tree::new(root),
         shapes: None,
