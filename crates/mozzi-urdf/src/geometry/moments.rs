@@ -36,7 +36,9 @@ const LEAST: f64 = 1e-15;
 /// The reason why there is no volume or area.
 pub(crate) fn moments(vertices: &[Vec3], triangles: &[[usize; 3]], filling: Filling) -> Result<Moments, String> {
     let hull = match filling {
-        Filling::Convex => Some(convex_hull(vertices).ok_or("its vertices are in one plane, so it has no convex hull")?),
+        Filling::Convex => {
+            Some(convex_hull(vertices).ok_or("its vertices are in one plane, so it has no convex hull")?)
+        }
         _ => None,
     };
     let whole = |&[a, b, c]: &[usize; 3]| [vertices[a], vertices[b], vertices[c]];
@@ -159,7 +161,9 @@ mod tests {
         let (vertices, faces) = cube(true);
         let why = |filling| moments(&vertices, &faces, filling).expect_err("no solid");
         assert!(why(Filling::Exact).contains("face inwards"));
-        assert!(moments(&vertices, &faces, Filling::Legacy).is_ok() && moments(&vertices, &faces, Filling::Convex).is_ok());
+        assert!(
+            moments(&vertices, &faces, Filling::Legacy).is_ok() && moments(&vertices, &faces, Filling::Convex).is_ok()
+        );
         let mut mixed = cube(false).1;
         mixed[3].swap(0, 1);
         assert!(moments(&vertices, &mixed, Filling::Exact).is_err_and(|why| why.contains("two have the edge")));

@@ -57,7 +57,8 @@ impl Model<'_> {
                 Err(why) => return Mass::Mesh(why.clone()),
                 Ok(body) if kind == "mesh" || kind == "sdf" => {
                     if is_shell {
-                        let message = "shellinertia: is not for a mesh, expected inertia=\"shell\" of the mesh in <asset>";
+                        let message =
+                            "shellinertia: is not for a mesh, expected inertia=\"shell\" of the mesh in <asset>";
                         cx.findings.add(item.error("unsupported_attribute", "shellinertia", message));
                         return Mass::Wrong;
                     }

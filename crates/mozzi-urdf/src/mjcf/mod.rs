@@ -7,7 +7,7 @@
 //! # What is read
 //! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls,
 //! several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and
-//! `springdamper`; inertias, given or computed from geoms; default classes; includes; compiler settings that affect the
+//! `springdamper`; inertias, given or computed from geoms, also from meshes; default classes; includes; compiler settings that affect the
 //! tree; gravity; keyframes; a linear equality of two joints, as a mimic joint; other equalities of joints, `connect`
 //! and `weld`, as constraints; the armature of actuators, and of fixed tendons, as rotors that several joints turn.
 //!
@@ -18,6 +18,9 @@
 //!   axes, angular first. The world, and other bodies in it, are then not links. Any other free body is attached to the
 //!   world by a free joint with the same positions and velocities.
 //! - A ball has MuJoCo's quaternion, angular velocity and spring.
+//! - The inertia of a mesh (STL, OBJ, MSH, or vertices in the model) is that of its convex hull, of what its triangles
+//!   bound, of MuJoCo's older pyramids, or of the shell, as its `inertia` says; solids are fitted to meshes, and
+//!   `shellinertia` is computed, as in MuJoCo. Mesh files are relative to the model's.
 //! - Unnamed elements are named by their number in MuJoCo: `body3`, `joint1`.
 //! - Equalities are rigid here; MuJoCo's solver keeps them approximately: `solref`, `solimp` and `torquescale` are not
 //!   used. Anchor {a} is in body 1 and {b} in body 2, at the point that coincides with it in the file's own
@@ -29,7 +32,7 @@
 //!
 //! # What is not read
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
-//!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed, shells.
+//!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed and unknown.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
 //!   Simulations may add the forces of actuators and gravity compensation: [`Actuated`].
 //! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without

@@ -43,12 +43,13 @@ fn what_has_no_place_is_refused_by_name() {
         (
             body!("<joint/><geom name='hull' type='mesh' mesh='§hull'/>"),
             "mesh_inertia",
-            "geom `hull`: is a mesh, whose inertia is needed: mozzi does not read meshes",
+            "geom `hull`: mesh: its inertia is needed, and is unknown: there is no such mesh in <asset>",
         ),
         (
-            body!("<joint/><geom size='1' shellinertia='§true'/>"),
+            "<mujoco><asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/></asset><worldbody><body name='b'><joint/>\
+             <geom type='mesh' mesh='m' shellinertia='§true'/></body></worldbody></mujoco>",
             "unsupported_attribute",
-            "body `b`: geom: shellinertia: is the inertia of a hollow body, which mozzi does not compute",
+            "body `b`: geom: shellinertia: is not for a mesh, expected inertia=\"shell\" of the mesh in <asset>",
         ),
         (
             "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><§xacro:arm/></mujoco>",
