@@ -32,7 +32,7 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     let (verdict, solid) = (old.verdict(), robot.solid(name));
     let misfit = solid.map_or(0.0, |solid| solid.misfit(old));
     let is_possible = verdict.is_physical();
-    if is_possible && misfit <= DOUBTED {
+    if is_possible && (misfit <= DOUBTED || is_placeholder(&inertial.numbers)) {
         return None;
     }
     let nearest = old.nearest_physical()?;
@@ -164,6 +164,13 @@ fn all(inertial: &Inertial<'_>, old: SpatialInertia) -> Vec<Candidate> {
         add("units", 0.1 * count as f64, said.to_string(), numbers);
     }
     found
+}
+
+/// The same round number three times is no measurement that units or columns could explain.
+fn is_placeholder(numbers: &Numbers) -> bool {
+    let [xx, xy, xz, yy, yz, zz] = numbers.moments;
+    let digits = format!("{xx:e}");
+    xx == yy && yy == zz && [xy, xz, yz] == [0.0; 3] && digits.split('e').next().is_some_and(|digits| digits.len() == 1)
 }
 
 /// x times 10^power, with the digits of x.

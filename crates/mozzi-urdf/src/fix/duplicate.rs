@@ -1,6 +1,7 @@
 //! A mass that is counted twice: a link and the one that a fixed joint attaches to it have the same inertia at the same
 //! place.
 
+use super::inertial::shortest;
 use super::{Proposal, Robot};
 use crate::edit::element::Editor;
 use mozzi::SpatialInertia;
@@ -27,7 +28,7 @@ pub(super) fn proposals(robot: &Robot<'_>) -> Vec<Proposal> {
         let mut editor = Editor::new(copy.tag.text);
         editor.remove(copy.tag);
         let mut proposal = robot.proposal("counted_twice", copy.link, &editor);
-        proposal.change = format!("its <inertial> of {:?} kg is removed", copy.numbers.mass);
+        proposal.change = format!("its <inertial> of {} kg is removed", shortest(copy.numbers.mass));
         proposal.reason = format!(
             "link `{kept}`, on the other side of the fixed joint `{}`, has the same inertia at the same place: the mass \
              is counted twice",

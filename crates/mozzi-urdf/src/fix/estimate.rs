@@ -1,5 +1,6 @@
 //! Inertias from shapes and a density, for links that have none or that are doubted.
 
+use super::fit::Detail;
 use super::inertial::shortest;
 use super::{Proposal, with_robot};
 use crate::edit::element::{Editor, Tag};
@@ -13,7 +14,7 @@ use mozzi::{SpatialInertia, Vec3};
 /// # Errors
 /// As [`proposals`](super::proposals).
 pub fn estimates(file_name: &str, text: &str, density: f64, settings: &Settings) -> Result<Vec<Proposal>, EditError> {
-    with_robot(file_name, text, settings, |robot| {
+    with_robot(file_name, text, settings, Detail::All, |robot| {
         let links = robot.root.children().filter(|tag| tag.name() == "link");
         let all = links.filter_map(|link| {
             let name = link.attribute("name")?;

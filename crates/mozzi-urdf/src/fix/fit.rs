@@ -6,7 +6,7 @@ use crate::geometry::surface::Surface;
 use crate::geometry::{Form, Purpose, Shape, locate};
 use crate::{XacroArguments, files};
 use mozzi::{SpatialInertia, Vec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// A larger mesh is not read.
@@ -15,6 +15,15 @@ const MOST_BYTES: u64 = 64 << 20;
 const DENSEST: f64 = 25_000.0;
 /// Points on a circle.
 const AROUND: u32 = 24;
+/// Of a larger mesh, the points that are the farthest in as many directions are enough to compare with.
+const DIRECTIONS: usize = 300;
+
+/// The points of the hull that matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Detail {
+    Rough,
+    All,
+}
 
 /// The convex hull of a link's shapes.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +74,7 @@ impl Solid {
 }
 
 /// The solids of all links whose shapes can be read: the collision shapes, or else the visual ones.
-pub(super) fn solids(file: &Path, text: &str) -> BTreeMap<String, Solid> {
+pub(super) fn solids(file: &Path, text: &str, detail: Detail) -> BTreeMap<String, Solid> {
     let shapes = crate::geometry::parse_with(&file.to_string_lossy(), text, &XacroArguments::default()).shapes;
     let mut links: BTreeMap<&str, Vec<&Shape>> = BTreeMap::new();
     for shape in &shapes {
@@ -75,12 +84,32 @@ pub(super) fn solids(file: &Path, text: &str) -> BTreeMap<String, Solid> {
         [Purpose::Collision, Purpose::Visual].into_iter().find_map(|purpose| {
             let mut points = Vec::new();
             for shape in shapes.iter().filter(|shape| shape.purpose == purpose) {
-                points.extend(points_of(shape, file)?.into_iter().map(|p| shape.T.R.matrix() * p + shape.T.p));
+                let mut own = points_of(shape, file)?;
+                if detail == Detail::Rough {
+                    own = farthest(own);
+                }
+                points.extend(own.into_iter().map(|p| shape.T.R.matrix() * p + shape.T.p));
             }
             Solid::of(&points)
         })
     };
     links.into_iter().filter_map(|(link, shapes)| Some((link.to_string(), solid(&shapes)?))).collect()
+}
+
+/// The points that are the farthest in some direction of Fibonacci's sphere.
+fn farthest(points: Vec<Vec3>) -> Vec<Vec3> {
+    if points.len() <= DIRECTIONS {
+        return points;
+    }
+    let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let direction = |k: usize| {
+        let z = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
+        let ((sin, cos), r) = ((turn * k as f64).sin_cos(), (1.0 - z * z).sqrt());
+        Vec3([r * cos, r * sin, z])
+    };
+    let far = |e: Vec3| (0..points.len()).max_by(|&i, &j| points[i].dot(e).total_cmp(&points[j].dot(e)));
+    let chosen: BTreeSet<usize> = (0..DIRECTIONS).filter_map(|k| far(direction(k))).collect();
+    chosen.into_iter().map(|i| points[i]).collect()
 }
 
 /// Points whose hull is about the shape's; None if its mesh cannot be read.

@@ -67,19 +67,19 @@ impl<'a> Inertial<'a> {
             && let Some(tag) = self.tag.child("mass")
         {
             editor.set(tag, "value", Some(&shortest(new.mass)));
-            said.push(format!("mass {:?} → {} kg", old.mass, shortest(new.mass)));
+            said.push(format!("mass {} → {} kg", shortest(old.mass), shortest(new.mass)));
         }
         if new.center != old.center
             && let Some(tag) = self.tag.child("origin")
         {
-            let written = new.center.map(shortest).join(" ");
-            said.push(format!("centre {:?} → {written} m", old.center));
+            let [before, written] = [old.center, new.center].map(|center| center.map(shortest).join(" "));
+            said.push(format!("centre {before} → {written} m"));
             editor.set(tag, "xyz", Some(&written));
         }
         for ((name, old), new) in MOMENTS.into_iter().zip(old.moments).zip(new.moments) {
             if let (true, Some(tag)) = (new != old, self.tag.child("inertia")) {
                 editor.set(tag, name, Some(&shortest(new)));
-                said.push(format!("{name} {old:?} → {}", shortest(new)));
+                said.push(format!("{name} {} → {}", shortest(old), shortest(new)));
             }
         }
         (editor, said.join(", "))
@@ -89,7 +89,8 @@ impl<'a> Inertial<'a> {
 /// A number without the last digits, which rounding changed: those that fifteen digits give.
 pub(super) fn shortest(x: f64) -> String {
     let rounded = format!("{x:.14e}").parse::<f64>().unwrap_or(x);
-    format!("{rounded:?}")
+    let is_plain = rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs());
+    if is_plain { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
 }
 
 /// (x² + y² + z²) E − r rᵀ: the moments of 1 kg at r about the origin.

@@ -1,5 +1,6 @@
 //! Limits of joints that are reversed, or forbid every effort.
 
+use super::inertial::shortest;
 use super::{Proposal, Robot, twin};
 use crate::edit::element::{Editor, Tag};
 use crate::text::number::numbers;
@@ -28,7 +29,8 @@ fn reversed(robot: &Robot<'_>, joint: Tag<'_>) -> Option<Proposal> {
     editor.set(limit, "lower", limit.attribute("upper"));
     editor.set(limit, "upper", limit.attribute("lower"));
     let mut proposal = robot.proposal("reversed_limit", joint, &editor);
-    proposal.change = format!("lower {lower:?} → {upper:?}, upper {upper:?} → {lower:?}");
+    let [low, high] = [lower, upper].map(shortest);
+    proposal.change = format!("lower {low} → {high}, upper {high} → {low}");
     proposal.reason = "the lower limit is above the upper one".to_string();
     Some(proposal)
 }
@@ -56,9 +58,9 @@ fn without_effort(robot: &Robot<'_>, joint: Tag<'_>, joints: &[Tag<'_>]) -> Opti
     };
     let (effort, evidence) = twin.or_else(alike)?;
     let mut editor = Editor::new(joint.text);
-    editor.set(joint.child("limit")?, "effort", Some(&format!("{effort:?}")));
+    editor.set(joint.child("limit")?, "effort", Some(&shortest(effort)));
     let mut proposal = robot.proposal("zero_effort", joint, &editor);
-    proposal.change = format!("effort 0 → {effort:?}");
+    proposal.change = format!("effort 0 → {}", shortest(effort));
     proposal.reason = format!("a limit of effort of 0 forbids every torque; {evidence}");
     Some(proposal)
 }

@@ -18,7 +18,7 @@ use crate::edit::element::{Editor, Replacement, Tag, replaced};
 use crate::text::expansion;
 use crate::urdf::write::NotUrdf;
 use crate::{EditError, Policy, Settings, parse_with};
-use fit::Solid;
+use fit::{Detail, Solid};
 use inertial::Inertial;
 use mozzi::SpatialInertia;
 use roxmltree::Document;
@@ -94,7 +94,7 @@ impl Robot<'_> {
 /// # Errors
 /// [`EditError::Load`] if the text cannot be read; [`EditError::Unsupported`] if it is not URDF.
 pub fn proposals(file_name: &str, text: &str, settings: &Settings) -> Result<Vec<Proposal>, EditError> {
-    with_robot(file_name, text, settings, |robot| {
+    with_robot(file_name, text, settings, Detail::Rough, |robot| {
         let twice = duplicate::proposals(robot);
         let is_twice = |name: &str| twice.iter().any(|one| one.inertia.as_ref().is_some_and(|(link, ..)| link == name));
         let mut all: Vec<Proposal> = Vec::new();
@@ -115,7 +115,7 @@ pub fn misfits(file_name: &str, text: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let Ok(document) = Document::parse(body) else { return found };
-    let solids = fit::solids(Path::new(file_name), text);
+    let solids = fit::solids(Path::new(file_name), text, Detail::Rough);
     for link in Tag::new(document.root_element(), body).children().filter(|tag| tag.name() == "link") {
         let (Some(name), Some(inertial)) = (link.attribute("name"), Inertial::read(link)) else { continue };
         if let Some(solid) = solids.get(name).filter(|_| inertial.numbers.mass > 0.0) {
@@ -137,6 +137,7 @@ fn with_robot(
     file_name: &str,
     text: &str,
     settings: &Settings,
+    detail: Detail,
     make: impl FnOnce(&Robot<'_>) -> Vec<Proposal>,
 ) -> Result<Vec<Proposal>, EditError> {
     let unsupported = |why: &str| EditError::Unsupported(NotUrdf { reasons: vec![why.to_string()] });
@@ -162,7 +163,7 @@ fn with_robot(
             inertials.insert(name.to_string(), inertial);
         }
     }
-    let solids = fit::solids(Path::new(file_name), text);
+    let solids = fit::solids(Path::new(file_name), text, detail);
     let robot = Robot { root, document: &document, description, solids, inertials };
     let mut all = make(&robot);
     all.sort_by_key(|proposal| proposal.line);

@@ -57,6 +57,7 @@ fn volume(points: &[Vec3], [a, b, c]: [usize; 3], d: usize) -> f64 {
 
 /// Four points that are not in one plane, far apart; d is behind abc.
 fn simplex(points: &[Vec3]) -> Option<[usize; 4]> {
+    let first = *points.first()?;
     let farthest = |measure: &dyn Fn(Vec3) -> f64| {
         let best = |best: (f64, usize), (i, &p): (usize, &Vec3)| {
             let x = measure(p);
@@ -64,7 +65,7 @@ fn simplex(points: &[Vec3]) -> Option<[usize; 4]> {
         };
         points.iter().enumerate().fold((0.0, 0), best)
     };
-    let a = farthest(&|p| p.0[0] - points[0].0[0]).1;
+    let a = farthest(&|p| p.0[0] - first.0[0]).1;
     let b = farthest(&|p| (p - points[a]).norm()).1;
     let along = points[b] - points[a];
     let c = farthest(&|p| along.cross(p - points[a]).norm()).1;
@@ -171,5 +172,6 @@ mod tests {
     fn flat_points_have_none() {
         let flat: Vec<Vec3> = (0..9).map(|k| Vec3([f64::from(k % 3), f64::from(k / 3), 0.5])).collect();
         assert!(convex_hull(&flat).is_none() && convex_hull(&flat[..2]).is_none() && convex_hull(&flat[..1]).is_none());
+        assert!(convex_hull(&[]).is_none());
     }
 }

@@ -3,9 +3,10 @@
 use super::Model;
 use super::class::Class;
 use super::compiler::FromGeoms;
-use super::contents::{Contents, Inside};
+use super::contents::{Around, Contents, Inside};
 use super::geom::Mass;
 use super::orientation::{pose, to_z, unit};
+use super::principal::settled;
 use super::tree::{Link, Name, Site};
 use super::{attributes::Item, vocabulary};
 use crate::report::finding::Finding;
@@ -32,7 +33,7 @@ impl<'a> Model<'a> {
         element.check_children(&vocabulary::WORLD, cx);
         let class = self.classes.named(&element, "childclass", Class::MAIN, cx);
         let mut contents = Contents::default();
-        self.gather(&element, SE3::identity(), class, 0, &mut contents, cx);
+        self.gather(&element, &Around::new(class), &mut contents, cx);
         for joint in contents.joints.iter().chain(&contents.free) {
             let message = "worldbody: has a joint, but the world does not move";
             cx.findings.error("misplaced_joint", joint.item.element.span(), message);
@@ -46,12 +47,12 @@ impl<'a> Model<'a> {
     fn body(&mut self, inside: Inside<'a>, carrier: Carrier, cx: &mut Context) {
         let element = inside.item.element.called("body");
         self.tree.bodies += 1;
-        let name = Name::of(&element, format!("body{}", self.tree.bodies), cx);
+        let name = Name::of(&element, format!("body{}", self.tree.bodies), cx).suffixed(&inside.around.suffix);
         let element = element.called(format!("body `{}`", name.shown()));
         let item = Item::plain(&element);
         element.check_attributes(&vocabulary::BODY, cx);
         element.check_children(&vocabulary::BODY, cx);
-        let class = self.classes.named(&element, "childclass", inside.class, cx);
+        let class = self.classes.named(&element, "childclass", inside.around.class, cx);
         let mut origin = inside.T * pose(&item, &self.compiler, cx);
         let compensation = item.number("gravcomp", 0.0, cx);
         if compensation != 0.0 {
@@ -61,7 +62,8 @@ impl<'a> Model<'a> {
             self.ignored.force("mocap", &item, "mocap", "a prescribed motion");
         }
         let mut contents = Contents::default();
-        self.gather(&element, SE3::identity(), class, carrier.depth, &mut contents, cx);
+        let around = Around { T: SE3::identity(), class, depth: carrier.depth, ..inside.around.clone() };
+        self.gather(&element, &around, &mut contents, cx);
 
         let mut place = Place::new(element.span());
         if let Some(value) = element.attribute("name") {
@@ -105,10 +107,10 @@ impl<'a> Model<'a> {
 
     /// A site is a frame, if it has a name.
     fn site(&mut self, site: &Inside, link: usize, cx: &mut Context) {
-        let Inside { item, T, .. } = site;
+        let Inside { item, T, around } = site;
         item.element.check_attributes(&vocabulary::SITE, cx);
         item.element.called("site").check_children(&vocabulary::SITE, cx);
-        let name = Name::of(&item.element.called("site"), String::new(), cx);
+        let name = Name::of(&item.element.called("site"), String::new(), cx).suffixed(&around.suffix);
         let mut frame = pose(item, &self.compiler, cx);
         if let Some([a, b, c, d, e, f]) = item.vector::<6>("fromto", cx) {
             let (from, to) = (Vec3([a, b, c]), Vec3([d, e, f]));
@@ -144,7 +146,7 @@ impl<'a> Model<'a> {
         let (inertial, from_geoms) = (contents.inertial.as_ref(), self.compiler.from_geoms);
         let given = inertial.map(|inertial| self.inertial(inertial, place, cx));
         let is_given = from_geoms == FromGeoms::Never || from_geoms == FromGeoms::Auto && given.is_some();
-        let mut sum = SpatialInertia::zero();
+        let (mut sum, mut parts) = (SpatialInertia::zero(), 0);
         for geom in &contents.geoms {
             let named = geom.item.element.attribute("name").map(|name| format!("geom `{}`", shown(name.text)));
             let subject = named.unwrap_or_else(|| format!("{}: geom", element.subject));
@@ -154,7 +156,10 @@ impl<'a> Model<'a> {
                 continue;
             }
             match self.mass_of(&item, geom.T, cx) {
-                Mass::Known(inertia) => sum += inertia,
+                Mass::Known(inertia) => {
+                    sum += inertia;
+                    parts += usize::from(inertia.mass > 0.0);
+                }
                 // checks of an unknown mass would only repeat the error
                 Mass::Wrong => place.report("mass"),
                 Mass::Mesh(_) if is_static => self.ignored.mesh(&item),
@@ -171,6 +176,7 @@ impl<'a> Model<'a> {
         let inertia = match given {
             Some(given) if is_given || sum.mass == 0.0 => given,
             _ if is_given => SpatialInertia::zero(),
+            _ if parts > 1 => SpatialInertia::new(sum.mass, sum.center_of_mass(), settled(sum.about_center_of_mass())),
             _ => sum,
         };
         self.bounded(inertia)

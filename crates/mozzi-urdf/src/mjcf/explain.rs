@@ -53,9 +53,9 @@ pub(crate) const CODES: [Entry; 43] = [
          as 0. For the page: a mesh that has no file, because the model gives its vertices, is not drawn.",
         "no action is needed, unless you need the total mass"),
     ("include",
-        "An included file cannot be read. Files are searched in the folder of the main file, also if an included \
-         file names them.",
-        "files are searched in the folder of the main file"),
+        "An included file cannot be read. Files are searched in the folder of the main file, then next to the file \
+         that includes them.",
+        "files are searched in the folder of the main file, then next to the file that includes them"),
     ("indefinite_inertia",
         "The inertia of a rigid body has a negative principal moment about its centre of mass. Rotation about \
          that axis would have a negative kinetic energy, and forward dynamics would be meaningless. All bodies \

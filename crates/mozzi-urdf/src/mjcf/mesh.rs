@@ -4,6 +4,7 @@ use super::Files;
 use super::attributes::Item;
 use super::class::{Class, Classes};
 use super::orientation::quaternion;
+use super::principal::settled;
 use crate::files;
 use crate::geometry::moments::{Filling, Moments, moments};
 use crate::geometry::surface::Surface;
@@ -96,8 +97,17 @@ impl<'a> Meshes<'a> {
         let (Some(item), Some(mesh)) = (self.assets.get(name), self.named(name, cx)) else {
             return Err("there is no such mesh in <asset>".into());
         };
-        for name in ["builtin", "maxhullvert"] {
-            if item.has(name) {
+        let filling = match item.word("inertia", &FILLINGS, cx) {
+            Some("convex") => Filling::Convex,
+            Some("exact") => Filling::Exact,
+            Some("shell") => Filling::Shell,
+            _ => Filling::Legacy,
+        };
+        let is_hull = filling == Filling::Convex || !item.has("file") && !item.has("face");
+        for (name, matters) in
+            [("builtin", true), ("maxhullvert", is_hull && item.number("maxhullvert", -1.0, cx) > 0.0)]
+        {
+            if matters && item.has(name) {
                 return Err(format!("{name}: changes its vertices in a way that mozzi does not follow"));
             }
         }
@@ -138,13 +148,8 @@ impl<'a> Meshes<'a> {
             let why = "its vertices are in one plane, so it has no convex hull";
             triangles = crate::geometry::hull::convex_hull(&vertices).ok_or(why)?;
         }
-        let filling = match item.word("inertia", &FILLINGS, cx) {
-            Some("convex") => Filling::Convex,
-            Some("exact") => Filling::Exact,
-            Some("shell") => Filling::Shell,
-            _ => Filling::Legacy,
-        };
         let moments = moments(&vertices, &triangles, filling)?;
+        let moments = Moments { I: settled(moments.I), ..moments };
         Ok(Body { vertices, moments })
     }
 

@@ -5,7 +5,7 @@
 //! decides, not the file's name.
 //!
 //! # What is read
-//! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls,
+//! Bodies, frames, `replicate` and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls,
 //! several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and
 //! `springdamper`; inertias, given or computed from geoms, also from meshes; default classes; includes; compiler settings that affect the
 //! tree; gravity; keyframes; a linear equality of two joints, as a mimic joint; other equalities of joints, `connect`
@@ -32,7 +32,7 @@
 //!
 //! # What is not read
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
-//!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed and unknown.
+//!   flexible bodies, `attach` and `composite`, meshes whose inertia is needed and unknown.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
 //!   Simulations may add the forces of actuators and gravity compensation: [`Actuated`].
 //! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without
@@ -64,6 +64,7 @@ mod law;
 mod mesh;
 mod option;
 mod orientation;
+mod principal;
 mod rotor;
 #[cfg(test)]
 mod schema;

@@ -200,6 +200,12 @@ pub(crate) const FRAME: Vocabulary = Vocabulary {
     silent: &["flexcomp"],
     ..NOTHING
 };
+pub(crate) const REPLICATE: Vocabulary = Vocabulary {
+    attributes: &["count", "offset", "euler", "sep", "childclass"],
+    many: &INSIDE,
+    silent: &["flexcomp"],
+    ..NOTHING
+};
 pub(crate) const INERTIAL: Vocabulary = Vocabulary {
     attributes: &["pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "mass", "diaginertia", "fullinertia"],
     ..NOTHING

@@ -36,9 +36,14 @@ fn what_has_no_place_is_refused_by_name() {
             "joint `j`: limits: go from 0.17453292519943295 to 0.3490658503988659, expected 0 and the ball's largest angle",
         ),
         (
-            body!("<§replicate count='3'/>"),
+            body!("<replicate count='§2.5'/>"),
+            "wrong_count",
+            "body `b`: replicate: count: is 2.5, expected a whole number, and at most 10000 copies in all",
+        ),
+        (
+            body!("<§attach model='m' prefix='p'/>"),
             "unsupported_element",
-            "body `b`: has <replicate>, which mozzi does not expand",
+            "body `b`: has <attach>, which mozzi does not expand",
         ),
         (
             body!("<joint/><geom name='hull' type='mesh' mesh='§hull'/>"),

@@ -78,7 +78,7 @@ fn published_faults_are_repaired() {
         assert_eq!(apply(&text, &list), arm(SOUND, LIMIT), "{what}: the least change restores the text");
         let said = list[0].to_string();
         assert!(
-            said.starts_with("link `hand`: ") && said.contains("because") && said.contains("M: entry (2, 2)"),
+            said.starts_with("link `hand`: ") && said.contains("because") && said.contains("\n  M: entry ("),
             "{said}"
         );
     }
@@ -88,8 +88,7 @@ fn published_faults_are_repaired() {
     ] {
         let list = found(&arm(SOUND, limit));
         assert_eq!(list.iter().map(|one| one.code).collect::<Vec<_>>(), [code], "{list:#?}");
-        let repaired = apply(&arm(SOUND, limit), &list).replace("effort=\"30.0\"", "effort=\"30\"");
-        assert_eq!(repaired, arm(SOUND, LIMIT));
+        assert_eq!(apply(&arm(SOUND, limit), &list), arm(SOUND, LIMIT));
         assert_eq!(list[0].effect, "M does not change");
     }
 }
@@ -130,7 +129,7 @@ fn a_mass_below_a_fixed_joint_is_counted_once() {
         ),
     );
     let list = found(&text);
-    assert_eq!(list.iter().map(|one| (one.code, one.line)).collect::<Vec<_>>(), [("counted_twice", 13)], "{list:#?}");
+    assert_eq!(list.iter().map(|one| (one.code, one.line)).collect::<Vec<_>>(), [("counted_twice", 12)], "{list:#?}");
     let repaired = parse("arm.urdf", apply(&text, &list)).unwrap().description;
     assert_eq!(repaired.links[3].inertia, mozzi::SpatialInertia::zero());
     assert!(apply(&text, &list).contains("<link name=\"copy\">\n  </link>"));

@@ -160,8 +160,17 @@ fn fault(robot: &Robot, kind: usize, draw: &mut Draw) -> Option<Fault> {
     let text = replaced(&robot.text, edits);
     let new = raw(&text, name)?;
     let fits = robot.misfits.get(name).is_some_and(|misfit| *misfit <= 0.7);
-    let shows = !new.verdict().is_physical() || fits && misfits(&robot.name, &text).get(name)? > &1.3;
-    shows.then(|| (text, name.to_string()))
+    // the link alone: its shapes are all that counts
+    let misfit = || {
+        let document = Document::parse(&text).ok()?;
+        let link = document
+            .root_element()
+            .children()
+            .find(|node| node.attribute("name") == Some(name) && node.has_tag_name("link"))?;
+        misfits(&robot.name, &format!("<robot name='r'>{}</robot>", &text[link.range()])).get(name).copied()
+    };
+    let shows = !new.verdict().is_physical() || fits && misfit()? > 1.3;
+    shows.then(|| (text.clone(), name.to_string()))
 }
 
 /// The inertia of a link as written.
