@@ -72,7 +72,7 @@ fn words(file: &[u8], word: &str) -> Result<Vec<Vec3>, String> {
     if found.is_empty() { Err("it has no vertices".into()) } else { Ok(found) }
 }
 
-/// `v` and `f` of Wavefront's OBJ; a polygon is a fan of triangles.
+/// `v` and `f` of Wavefront's OBJ; polygons are split.
 fn obj(file: &[u8]) -> Result<Surface, String> {
     let text = bytes::to_text(file).map_err(|(_, finding)| finding.message)?;
     let (vertices, mut triangles, mut first_group) = (words(file, "v")?, Vec::new(), None);
@@ -90,12 +90,25 @@ fn obj(file: &[u8]) -> Result<Surface, String> {
                 let place = |i: i64| usize::try_from(if i < 0 { count + i } else { i - 1 }).ok();
                 let polygon: Option<Vec<usize>> = parts.map(|part| index(part).and_then(place)).collect();
                 let polygon = polygon.filter(|all| all.iter().all(|&i| i < vertices.len())).unwrap_or_default();
-                triangles.extend(polygon.windows(2).skip(1).map(|pair| [polygon[0], pair[0], pair[1]]));
+                triangles.extend(split(&polygon, &vertices));
             }
             _ => {}
         }
     }
     Ok(Surface { first_group: first_group.unwrap_or(triangles.len()), vertices, triangles })
+}
+
+/// Triangles of a polygon: a quadrilateral's by its shorter diagonal, in numbers of 32 bits as tinyobjloader has them,
+/// else a fan.
+fn split(polygon: &[usize], vertices: &[Vec3]) -> Vec<[usize; 3]> {
+    if let &[a, b, c, d] = polygon {
+        let square = |i: usize, j: usize| {
+            let [x, y, z] = [0, 1, 2].map(|k| vertices[j].0[k] as f32 - vertices[i].0[k] as f32);
+            x * x + y * y + z * z
+        };
+        return if square(a, c) < square(b, d) { vec![[a, b, c], [a, c, d]] } else { vec![[a, b, d], [b, c, d]] };
+    }
+    polygon.windows(2).skip(1).map(|pair| [polygon[0], pair[0], pair[1]]).collect()
 }
 
 /// Four counts (vertices, normals, texture coordinates, triangles), then these as `f32` and `i32`.
@@ -133,11 +146,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn polygons_are_fans_and_groups_are_counted() {
+    fn polygons_are_split_and_groups_are_counted() {
         let text = "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2/1 3//2 -1\no b\nf 1 2 3\n";
         let surface = Surface::read("obj", text.as_bytes()).expect("a mesh");
-        assert_eq!(surface.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
+        assert_eq!(surface.triangles, [[0, 1, 3], [1, 2, 3], [0, 1, 2]]);
         assert_eq!((surface.vertices.len(), surface.first_group), (4, 2));
+        // by the shorter diagonal; a pentagon from its first corner
+        let text = text.replace("v 1 1 0", "v 0.9 0.9 0").replace("f 1 2 3", "f 1 2 3 4 1");
+        let surface = Surface::read("obj", text.as_bytes()).expect("a mesh");
+        assert_eq!(surface.triangles[..3], [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
     }
 
     #[test]

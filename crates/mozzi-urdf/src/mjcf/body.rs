@@ -6,7 +6,6 @@ use super::compiler::FromGeoms;
 use super::contents::{Around, Contents, Inside};
 use super::geom::Mass;
 use super::orientation::{pose, to_z, unit};
-use super::principal::settled;
 use super::tree::{Link, Name, Site};
 use super::{attributes::Item, vocabulary};
 use crate::report::finding::Finding;
@@ -146,7 +145,7 @@ impl<'a> Model<'a> {
         let (inertial, from_geoms) = (contents.inertial.as_ref(), self.compiler.from_geoms);
         let given = inertial.map(|inertial| self.inertial(inertial, place, cx));
         let is_given = from_geoms == FromGeoms::Never || from_geoms == FromGeoms::Auto && given.is_some();
-        let (mut sum, mut parts) = (SpatialInertia::zero(), 0);
+        let mut sum = SpatialInertia::zero();
         for geom in &contents.geoms {
             let named = geom.item.element.attribute("name").map(|name| format!("geom `{}`", shown(name.text)));
             let subject = named.unwrap_or_else(|| format!("{}: geom", element.subject));
@@ -156,10 +155,7 @@ impl<'a> Model<'a> {
                 continue;
             }
             match self.mass_of(&item, geom.T, cx) {
-                Mass::Known(inertia) => {
-                    sum += inertia;
-                    parts += usize::from(inertia.mass > 0.0);
-                }
+                Mass::Known(inertia) => sum += inertia,
                 // checks of an unknown mass would only repeat the error
                 Mass::Wrong => place.report("mass"),
                 Mass::Mesh(_) if is_static => self.ignored.mesh(&item),
@@ -176,7 +172,6 @@ impl<'a> Model<'a> {
         let inertia = match given {
             Some(given) if is_given || sum.mass == 0.0 => given,
             _ if is_given => SpatialInertia::zero(),
-            _ if parts > 1 => SpatialInertia::new(sum.mass, sum.center_of_mass(), settled(sum.about_center_of_mass())),
             _ => sum,
         };
         self.bounded(inertia)

@@ -31,6 +31,8 @@ pub(crate) struct Compiler {
     pub balance: bool,
     /// Are solids fitted to the bounding boxes of meshes?
     pub fit_aabb: bool,
+    /// Are the folders of meshes' files dropped?
+    pub strips: bool,
     pub total_mass: Option<f64>,
 }
 
@@ -48,6 +50,7 @@ impl Compiler {
             bound_inertia: 0.0,
             balance: false,
             fit_aabb: false,
+            strips: false,
             total_mass: None,
         };
         for section in sections {
@@ -85,6 +88,7 @@ impl Compiler {
         self.autolimits = item.flag("autolimits", self.autolimits, cx);
         self.align_free = item.flag("alignfree", self.align_free, cx);
         self.balance = item.flag("balanceinertia", self.balance, cx);
+        self.strips = item.flag("strippath", self.strips, cx);
         self.fit_aabb = item.flag("fitaabb", self.fit_aabb, cx);
         match item.word("inertiafromgeom", &["auto", "true", "false"], cx) {
             Some("true") => self.from_geoms = FromGeoms::Always,

@@ -43,7 +43,7 @@ impl Model<'_> {
                 return Mass::Wrong;
             }
         }
-        let kind = item.word("type", &TYPES, cx).unwrap_or("sphere");
+        let (kind, scale) = (item.word("type", &TYPES, cx).unwrap_or("sphere"), item.number("fitscale", 1.0, cx));
         if mass.map_or(density, |[mass]| mass) == 0.0 || kind == "plane" || kind == "hfield" {
             return nothing;
         }
@@ -67,7 +67,7 @@ impl Model<'_> {
                     return Mass::Known(SpatialInertia::new(mass, center, I * (mass / size)).transformed(T * frame));
                 }
                 Ok(body) => {
-                    let (solid, shift) = fitted(body, kind, item.number("fitscale", 1.0, cx), self.compiler.fit_aabb);
+                    let (solid, shift) = fitted(body, kind, scale, self.compiler.fit_aabb);
                     (solid, frame * shift)
                 }
             }

@@ -48,13 +48,18 @@ pub(crate) struct Meshes<'a> {
 }
 
 impl<'a> Meshes<'a> {
-    pub fn new(sections: &[Element<'a>], classes: &Classes<'a>, files: Files<'a>, cx: &mut Context) -> Self {
+    pub fn new(
+        sections: &[Element<'a>],
+        classes: &Classes<'a>,
+        strips: bool,
+        files: Files<'a>,
+        cx: &mut Context,
+    ) -> Self {
         let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
-        let (mut folder, mut strips) = (String::new(), false);
+        let mut folder = String::new();
         for compiler in of("compiler") {
             let text = |name| compiler.attribute(name).map(|value| value.text);
             folder = text("meshdir").or(text("assetdir")).map_or(folder, str::to_string);
-            strips = text("strippath").map_or(strips, |text| text == "true");
         }
         let mut assets = BTreeMap::new();
         for mesh in of("asset").flat_map(Element::elements).filter(|asset| asset.name() == "mesh") {

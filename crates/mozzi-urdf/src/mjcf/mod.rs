@@ -195,9 +195,9 @@ fn read_model<'a>(root: &Element<'a>, files: Files<'a>, wanted: Wanted, cx: &mut
     // the order of the sections does not matter
     let (compiler, classes) = (Compiler::read(of("compiler"), cx), Classes::read(of("default"), cx));
     let mut model = Model {
+        meshes: Meshes::new(&sections, &classes, compiler.strips, files, cx),
         compiler,
         options: Options::default(),
-        meshes: Meshes::new(&sections, &classes, files, cx),
         classes,
         ignored: Ignored::default(),
         tree: Tree::new(root),

@@ -1,6 +1,6 @@
-//! MuJoCo's principal moments. It turns an inertia to its principal axes by Jacobi's rotations as quaternions, stops early,
-//! and drops the products of inertia that are left, up to 10⁻¹² kg m² or a part of 10⁻⁶. A model means the robot that
-//! MuJoCo makes of it, so the same is dropped here.
+//! The principal moments of a mesh in MuJoCo. It turns the mesh to its principal axes by Jacobi's rotations as quaternions,
+//! stops early, and drops the products of inertia that are left, up to 10⁻¹² m⁵ or a part of 10⁻⁶. A model means the robot
+//! that MuJoCo makes of it, so the same is dropped here.
 
 use mozzi::linalg::Sym3;
 
