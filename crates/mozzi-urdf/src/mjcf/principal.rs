@@ -1,16 +1,20 @@
 //! The principal moments of a mesh in MuJoCo. It turns the mesh to its principal axes by Jacobi's rotations as quaternions,
-//! stops early, and drops the products of inertia that are left, up to 10⁻¹² m⁵ or a part of 10⁻⁶. A model means the robot
-//! that MuJoCo makes of it, so the same is dropped here.
+//! stops early, and drops the products of inertia that are left, up to a part of 10⁻⁶. A model means the robot that MuJoCo
+//! makes of it, so the same is dropped here.
 
 use mozzi::linalg::Sym3;
 
-/// Smaller products of inertia are dropped, and rotations whose cosine is as close to 1 are not made.
+/// Smaller products of inertia, relative to the largest moment, are dropped, and rotations whose cosine is as close to 1 are not made.
 const SMALL: f64 = 1e-12;
 const MOST_TURNS: usize = 500;
 
 /// The inertia that remains.
 pub(crate) fn settled(I: Sym3) -> Sym3 {
-    let M = I.to_mat3().rows();
+    let scale = I.to_mat3().rows().as_flattened().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    if scale == 0.0 {
+        return I;
+    }
+    let M = (I * (1.0 / scale)).to_mat3().rows();
     let mut q = [1.0, 0.0, 0.0, 0.0];
     let mut R = matrix(q);
     let mut D = turned(M, R);
@@ -44,7 +48,7 @@ pub(crate) fn settled(I: Sym3) -> Sym3 {
         R = matrix(q);
         D = turned(M, R);
     }
-    let entry = |i: usize, j: usize| (0..3).map(|k| R[i][k] * D[k][k] * R[j][k]).sum();
+    let entry = |i: usize, j: usize| (0..3).map(|k| R[i][k] * D[k][k] * R[j][k]).sum::<f64>() * scale;
     Sym3 { xx: entry(0, 0), xy: entry(0, 1), xz: entry(0, 2), yy: entry(1, 1), yz: entry(1, 2), zz: entry(2, 2) }
 }
 
@@ -91,8 +95,8 @@ mod tests {
             let far = a.as_flattened().iter().zip(b.as_flattened()).fold(0.0_f64, |m, (x, y)| m.max((x - y).abs()));
             assert!(far < 1e-6, "{k}: {far:e}");
         }
-        // products below 1e-12 vanish
-        let I = Sym3 { xy: 9e-13, ..Sym3::diagonal(1e-9, 2e-9, 2.5e-9) };
-        assert_eq!(settled(I), Sym3 { xy: 0.0, ..I });
+        let I = Sym3 { xy: 2e-21, ..Sym3::diagonal(1e-9, 2e-9, 2.5e-9) };
+        assert_eq!(settled(I).xy, 0.0);
+        assert_eq!(settled(Sym3::diagonal(0.0, 0.0, 0.0)), Sym3::diagonal(0.0, 0.0, 0.0));
     }
 }

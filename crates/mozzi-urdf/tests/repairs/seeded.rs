@@ -244,6 +244,9 @@ fn two_hundred_faults_of_twenty_robots() {
     files.dedup_by_key(|file| file.parent().map(Path::to_path_buf)); // one of each robot's variants
     let mut robots = Vec::new();
     for file in files {
+        if robots.len() == ROBOTS {
+            break;
+        }
         let (name, text) = (file.to_string_lossy().into_owned(), std::fs::read_to_string(&file).unwrap());
         let Ok(loaded) = parse(&name, &text) else { continue };
         let description = loaded.description;
@@ -252,7 +255,6 @@ fn two_hundred_faults_of_twenty_robots() {
         }
         robots.push(Robot { misfits: misfits(&name, &text), name, text, description });
     }
-    robots.truncate(ROBOTS);
     assert_eq!(robots.len(), ROBOTS);
     let (mut draw, mut repaired, mut total, mut lost) = (Draw(20_261_127), [0; 10], [0; 10], Vec::new());
     for (kind, name) in KINDS.into_iter().enumerate() {
