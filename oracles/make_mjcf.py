@@ -2,6 +2,7 @@
 """Reference numbers for models in MJCF, from MuJoCo, in the layout of make.py.
 
     python oracles/make_mjcf.py --out DIR       every tree of gymnasium and dm_control, 100 states each
+    python oracles/make_mjcf.py --out DIR --models FOLDER   every model below a folder, such as MuJoCo's Menagerie
     python oracles/make_mjcf.py --committed     the models beside this script, 5 states each
 
 Actuators, contacts, limits, springs, damping and friction are switched off; armature stays. Joints that an equality
@@ -37,6 +38,12 @@ def packaged():
         for path in sorted((root / folder).glob("**/*.xml")):
             name = path.relative_to(root / folder).with_suffix("")
             yield f"{package}_{str(name).replace('/', '_')}", path
+
+
+def below(folder):
+    """Name and path of every model below a folder."""
+    for path in sorted(folder.glob("**/*.xml")):
+        yield str(path.relative_to(folder).with_suffix("")).replace("/", "_"), path
 
 
 def load(path):
@@ -206,6 +213,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--states", type=int, default=100, help="random states a model (100)")
     parser.add_argument("--out", type=Path, help="folder to write to")
+    parser.add_argument("--models", type=Path, help="folder of models, instead of the packages'")
     parser.add_argument("--committed", action="store_true", help="write the small files beside this script")
     options = parser.parse_args()
     if options.committed:
@@ -216,7 +224,7 @@ def main():
         parser.error("--out DIR or --committed is needed")
     options.out.mkdir(parents=True, exist_ok=True)
     lines = []
-    for name, path in packaged():
+    for name, path in below(options.models) if options.models else packaged():
         verdict = "compared"
         try:
             write(options.out / f"mjcf_{name}.json", record(name, path, str(path), options.states))

@@ -12,7 +12,8 @@ struct Need {
     one_of: &'static [&'static str],
 }
 
-const NEEDS: [Need; 10] = [
+const NEEDS: [Need; 11] = [
+    need("check", &["apply"], &["fix", "estimate-inertia"]),
     need("compute", &["out", "precision", "threads", "kernels-only", "gpu"], &["in"]),
     need("ik", &["out"], &["in"]),
     need("identify", &["payload"], &["only payload"]),

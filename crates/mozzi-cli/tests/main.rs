@@ -30,6 +30,7 @@ mod page_contacts;
 mod page_numbers;
 mod play;
 mod plot;
+mod repairs;
 mod screen;
 mod shell;
 mod sources;

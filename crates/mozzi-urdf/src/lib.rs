@@ -56,6 +56,7 @@
 pub mod constraints;
 mod edit;
 pub mod embedded;
+pub mod fix;
 pub mod geometry;
 pub mod json;
 pub mod mjcf;

@@ -121,7 +121,7 @@ fn main_of(folder: &Path) -> Result<Loaded, String> {
 
 #[test]
 fn included_files_stand_where_they_are_named() {
-    let part = "<mujocoinclude><body name='b'><include file='parts/geom.xml'/></body><body name='c'/></mujocoinclude>";
+    let part = "<mujocoinclude><body name='b'><include file='parts/geom.xml'/></body><body name='c'/><include file='near.xml'/></mujocoinclude>";
     let files = [
         (
             "main.xml",
@@ -129,11 +129,13 @@ fn included_files_stand_where_they_are_named() {
         ),
         ("parts/b.xml", part),
         ("parts/geom.xml", "<any><geom size='1' mass='2'/><light/></any>"),
+        // next to the file that includes it, and not in the main file's folder
+        ("parts/near.xml", "<any><body name='e'/></any>"),
     ];
     let folder = folder("included", &files);
     let robot = main_of(&folder).unwrap();
     let names: Vec<&str> = robot.description.links.iter().map(|link| link.name.as_str()).collect();
-    assert_eq!(names, ["world", "a", "b", "c", "d"]);
+    assert_eq!(names, ["world", "a", "b", "c", "e", "d"]);
     assert_eq!(robot.description.links[2].inertia.mass, 2.0);
     assert!(robot.description.joints.iter().all(|joint| joint.kind == JointKind::Fixed));
     let [light] = robot.unused.as_slice() else { panic!("{:?}", robot.unused) };

@@ -1,6 +1,6 @@
 //! `mozzi check`: errors and warnings of a robot's file.
 
-use super::info;
+use super::{info, repairs};
 use crate::failure::{self, Failure, Result};
 use crate::robot::PolicyArguments;
 use crate::{input, json as pretty, robot_json, sarif};
@@ -22,6 +22,18 @@ pub struct CheckArguments {
     /// The same as --format json
     #[arg(long, conflicts_with = "format")]
     json: bool,
+    /// Propose repairs of a URDF's numbers, each with its reason and its effect on M: an inertia with a power of ten too
+    /// much, of a wrong sign, with mixed columns, about the wrong point, in mm or g, or the nearest possible one; a mass
+    /// counted twice; reversed limits; an effort of 0. Shapes are read from their files
+    #[arg(long)]
+    fix: bool,
+    /// Propose inertias from the links' shapes, as their convex hulls filled with a density in kg/m³; a given mass is
+    /// kept
+    #[arg(long, value_name = "density=KG_PER_M3", conflicts_with = "fix")]
+    estimate_inertia: Option<String>,
+    /// Write the proposals into the files, and nothing else
+    #[arg(long)]
+    apply: bool,
     #[command(flatten)]
     policy: PolicyArguments,
 }
@@ -37,11 +49,34 @@ impl CheckArguments {
     fn format(&self) -> Format {
         if self.json { Format::Json } else { self.format }
     }
+
+    /// Whether proposals are applied.
+    pub fn applies(&self) -> bool {
+        self.apply
+    }
+
+    /// The density of `--estimate-inertia`.
+    pub fn density(&self) -> Result<Option<f64>> {
+        let Some(text) = &self.estimate_inertia else { return Ok(None) };
+        let number = text.strip_prefix("density=").and_then(|number| number.parse::<f64>().ok());
+        match number.filter(|density| *density > 0.0 && density.is_finite()) {
+            Some(density) => Ok(Some(density)),
+            None => Err(Failure::wrong(format!(
+                "--estimate-inertia: is `{text}`, expected density= and a number above 0, kg/m³, such as density=1000"
+            ))),
+        }
+    }
 }
 
 /// Checks each file; the command fails if one of them is refused.
 pub fn run(arguments: &CheckArguments) -> Result<String> {
     let format = arguments.format();
+    if arguments.fix || arguments.estimate_inertia.is_some() {
+        if format == Format::Sarif {
+            return Err(Failure::wrong("--fix: proposals are printed as text or JSON, expected --format text or json"));
+        }
+        return repairs::run(arguments, &arguments.models, format == Format::Json, &arguments.policy.settings());
+    }
     if let (Format::Text, [name]) = (format, &arguments.models[..]) {
         return as_text(arguments, name);
     }

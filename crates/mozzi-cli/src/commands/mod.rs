@@ -19,6 +19,7 @@ pub mod outcome;
 pub mod play;
 pub mod plot;
 pub mod python;
+mod repairs;
 pub mod robots;
 pub mod screws;
 pub mod simulate;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// An element and the text that it is in.
 #[derive(Clone, Copy)]
-pub(super) struct Tag<'a> {
+pub(crate) struct Tag<'a> {
     pub node: Node<'a, 'a>,
     pub text: &'a str,
 }
@@ -21,7 +21,7 @@ impl<'a> Tag<'a> {
         rest.split(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>')).next().unwrap_or_default()
     }
 
-    fn children(self) -> impl Iterator<Item = Tag<'a>> {
+    pub fn children(self) -> impl Iterator<Item = Tag<'a>> {
         self.node.children().filter(Node::is_element).map(move |node| Tag { node, text: self.text })
     }
 
@@ -59,7 +59,7 @@ impl<'a> Tag<'a> {
 
 /// A change of an element.
 #[derive(Clone)]
-pub(super) enum Change<'a> {
+pub(crate) enum Change<'a> {
     /// An attribute's value; `None` removes it with the white space before it.
     Set(Tag<'a>, String, Option<String>),
     /// The element, and its line if nothing else is on it.
@@ -94,13 +94,13 @@ impl Change<'_> {
 }
 
 /// Changes of a text.
-pub(super) struct Editor<'a> {
+pub(crate) struct Editor<'a> {
     text: &'a str,
     pub changes: Vec<Change<'a>>,
 }
 
 /// A part of a text and what replaces it.
-pub(super) type Replacement = (Range<usize>, String);
+pub(crate) type Replacement = (Range<usize>, String);
 
 impl<'a> Editor<'a> {
     pub fn new(text: &'a str) -> Self {
@@ -238,7 +238,7 @@ impl<'a> Editor<'a> {
 }
 
 /// The text with parts of it replaced.
-pub(super) fn replaced(text: &str, mut replacements: Vec<Replacement>) -> String {
+pub(crate) fn replaced(text: &str, mut replacements: Vec<Replacement>) -> String {
     replacements.sort_by_key(|(range, _)| (range.start, range.end));
     let (mut result, mut at) = (String::with_capacity(text.len()), 0);
     for (range, replacement) in &replacements {

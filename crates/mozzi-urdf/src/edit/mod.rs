@@ -1,7 +1,7 @@
 //! Edits a robot's texts in place for changed inertias, friction, armature and springs; those of URDF also for locked
 //! joints or a floating base. Visuals, comments and unknown elements remain.
 
-mod element;
+pub(crate) mod element;
 mod joint;
 mod link;
 mod mjcf;

@@ -3,10 +3,13 @@
 
 mod contact;
 mod files;
+pub(crate) mod hull;
 pub(crate) mod inertia;
 mod mesh;
+pub(crate) mod moments;
 mod read;
 mod shape;
+pub(crate) mod surface;
 mod vertices;
 
 pub use contact::{FRICTION, ShapeContacts, contact_points};

@@ -1,6 +1,6 @@
 //! The vertices of a mesh that are farthest in some direction.
 
-use crate::text::bytes;
+use super::surface::Surface;
 use mozzi::nalgebra::Matrix3;
 use mozzi::{Scalar, Vec3};
 use std::collections::BTreeSet;
@@ -11,10 +11,8 @@ const DIRECTIONS: usize = 2000;
 /// The vertices of a mesh, "stl" or "obj", that are the farthest in one of 2,000 directions: vertices of its convex
 /// hull.
 pub(super) fn extreme_vertices(format: &str, file: &[u8]) -> Result<Vec<Vec3>, String> {
-    super::check_mesh(format, file)?;
     let mut vertices = match format {
-        "stl" => stl(file)?,
-        "obj" => words(file, "v")?,
+        "stl" | "obj" => Surface::read(format, file)?.vertices,
         other => return Err(format!("contact points of `{other}` meshes are not read; expected stl or obj")),
     };
     // each once: a corner of a surface belongs to some six triangles
@@ -68,36 +66,6 @@ fn farthest(vertices: &[Vec3]) -> Vec<Vec3> {
         found.extend(far);
     }
     found.into_iter().map(|k| vertices[k]).collect()
-}
-
-/// Binary: 80 bytes, a count, and for each triangle a normal and three corners of three `f32` each.
-fn stl(file: &[u8]) -> Result<Vec<Vec3>, String> {
-    let count = file.get(80..84).and_then(|bytes| bytes.first_chunk().copied()).map_or(0, u32::from_le_bytes);
-    if file.len() / 50 < count as usize || file.starts_with(b"solid") && words(file, "vertex").is_ok() {
-        return words(file, "vertex");
-    }
-    let mut found = Vec::new();
-    for triangle in file[84..].chunks_exact(50) {
-        let number = |k: usize| triangle[12 + 4 * k..].first_chunk().copied().map_or(0.0, f32::from_le_bytes);
-        found.extend((0..3).map(|corner| Vec3(std::array::from_fn(|k| f64::from(number(3 * corner + k))))));
-    }
-    Ok(found)
-}
-
-/// The three numbers after a word at the beginning of a line.
-fn words(file: &[u8], word: &str) -> Result<Vec<Vec3>, String> {
-    let text = bytes::to_text(file).map_err(|(_, finding)| finding.message)?;
-    let mut found = Vec::new();
-    for line in text.lines() {
-        let mut parts = line.split_whitespace();
-        if parts.next() == Some(word) {
-            let numbers: Vec<f64> = parts.take(3).filter_map(|part| part.parse().ok()).collect();
-            if let [x, y, z] = numbers[..] {
-                found.push(Vec3([x, y, z]));
-            }
-        }
-    }
-    if found.is_empty() { Err("it has no vertices".into()) } else { Ok(found) }
 }
 
 #[cfg(test)]

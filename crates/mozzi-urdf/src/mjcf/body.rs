@@ -3,7 +3,7 @@
 use super::Model;
 use super::class::Class;
 use super::compiler::FromGeoms;
-use super::contents::{Contents, Inside};
+use super::contents::{Around, Contents, Inside};
 use super::geom::Mass;
 use super::orientation::{pose, to_z, unit};
 use super::tree::{Link, Name, Site};
@@ -32,7 +32,7 @@ impl<'a> Model<'a> {
         element.check_children(&vocabulary::WORLD, cx);
         let class = self.classes.named(&element, "childclass", Class::MAIN, cx);
         let mut contents = Contents::default();
-        self.gather(&element, SE3::identity(), class, 0, &mut contents, cx);
+        self.gather(&element, &Around::new(class), &mut contents, cx);
         for joint in contents.joints.iter().chain(&contents.free) {
             let message = "worldbody: has a joint, but the world does not move";
             cx.findings.error("misplaced_joint", joint.item.element.span(), message);
@@ -46,12 +46,12 @@ impl<'a> Model<'a> {
     fn body(&mut self, inside: Inside<'a>, carrier: Carrier, cx: &mut Context) {
         let element = inside.item.element.called("body");
         self.tree.bodies += 1;
-        let name = Name::of(&element, format!("body{}", self.tree.bodies), cx);
+        let name = Name::of(&element, format!("body{}", self.tree.bodies), cx).suffixed(&inside.around.suffix);
         let element = element.called(format!("body `{}`", name.shown()));
         let item = Item::plain(&element);
         element.check_attributes(&vocabulary::BODY, cx);
         element.check_children(&vocabulary::BODY, cx);
-        let class = self.classes.named(&element, "childclass", inside.class, cx);
+        let class = self.classes.named(&element, "childclass", inside.around.class, cx);
         let mut origin = inside.T * pose(&item, &self.compiler, cx);
         let compensation = item.number("gravcomp", 0.0, cx);
         if compensation != 0.0 {
@@ -61,7 +61,8 @@ impl<'a> Model<'a> {
             self.ignored.force("mocap", &item, "mocap", "a prescribed motion");
         }
         let mut contents = Contents::default();
-        self.gather(&element, SE3::identity(), class, carrier.depth, &mut contents, cx);
+        let around = Around { T: SE3::identity(), class, depth: carrier.depth, ..inside.around.clone() };
+        self.gather(&element, &around, &mut contents, cx);
 
         let mut place = Place::new(element.span());
         if let Some(value) = element.attribute("name") {
@@ -105,10 +106,10 @@ impl<'a> Model<'a> {
 
     /// A site is a frame, if it has a name.
     fn site(&mut self, site: &Inside, link: usize, cx: &mut Context) {
-        let Inside { item, T, .. } = site;
+        let Inside { item, T, around } = site;
         item.element.check_attributes(&vocabulary::SITE, cx);
         item.element.called("site").check_children(&vocabulary::SITE, cx);
-        let name = Name::of(&item.element.called("site"), String::new(), cx);
+        let name = Name::of(&item.element.called("site"), String::new(), cx).suffixed(&around.suffix);
         let mut frame = pose(item, &self.compiler, cx);
         if let Some([a, b, c, d, e, f]) = item.vector::<6>("fromto", cx) {
             let (from, to) = (Vec3([a, b, c]), Vec3([d, e, f]));
@@ -157,17 +158,22 @@ impl<'a> Model<'a> {
                 Mass::Known(inertia) => sum += inertia,
                 // checks of an unknown mass would only repeat the error
                 Mass::Wrong => place.report("mass"),
-                Mass::Mesh if is_static => self.ignored.mesh(&item),
-                Mass::Mesh => {
+                Mass::Mesh(_) if is_static => self.ignored.mesh(&item),
+                Mass::Mesh(why) => {
                     let help = "give the body an <inertial>, or the geom mass=\"0\"; MuJoCo writes inertias into the file that \
                                 it saves with the compiler's saveinertial";
-                    let message = "is a mesh, whose inertia is needed: mozzi does not read meshes";
-                    cx.findings.add(item.error("mesh_inertia", "mesh", message).help(help));
+                    let message = format!("mesh: its inertia is needed, and is unknown: {why}");
+                    cx.findings.add(item.error("mesh_inertia", "mesh", &message).help(help));
                     place.report("mass");
                 }
             }
         }
-        let inertia = if is_given { given.unwrap_or_else(SpatialInertia::zero) } else { sum };
+        // without a geom that has a mass the given inertia remains
+        let inertia = match given {
+            Some(given) if is_given || sum.mass == 0.0 => given,
+            _ if is_given => SpatialInertia::zero(),
+            _ => sum,
+        };
         self.bounded(inertia)
     }
 

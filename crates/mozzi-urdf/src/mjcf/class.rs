@@ -73,7 +73,7 @@ impl<'a> Classes<'a> {
         for child in element.elements() {
             let Some((tag, words)) = of_tag(child.name()) else {
                 match child.name() {
-                    "mesh" => self.keep(class, "mesh", &["scale"], &child),
+                    "mesh" => self.keep(class, "mesh", &["scale", "inertia", "maxhullvert"], &child),
                     "material" => self.keep(class, "material", &["rgba"], &child),
                     _ => {}
                 }

@@ -29,6 +29,10 @@ pub(crate) struct Compiler {
     pub bound_mass: f64,
     pub bound_inertia: f64,
     pub balance: bool,
+    /// Are solids fitted to the bounding boxes of meshes?
+    pub fit_aabb: bool,
+    /// Are the folders of meshes' files dropped?
+    pub strips: bool,
     pub total_mass: Option<f64>,
 }
 
@@ -45,6 +49,8 @@ impl Compiler {
             bound_mass: 0.0,
             bound_inertia: 0.0,
             balance: false,
+            fit_aabb: false,
+            strips: false,
             total_mass: None,
         };
         for section in sections {
@@ -82,6 +88,8 @@ impl Compiler {
         self.autolimits = item.flag("autolimits", self.autolimits, cx);
         self.align_free = item.flag("alignfree", self.align_free, cx);
         self.balance = item.flag("balanceinertia", self.balance, cx);
+        self.strips = item.flag("strippath", self.strips, cx);
+        self.fit_aabb = item.flag("fitaabb", self.fit_aabb, cx);
         match item.word("inertiafromgeom", &["auto", "true", "false"], cx) {
             Some("true") => self.from_geoms = FromGeoms::Always,
             Some("false") => self.from_geoms = FromGeoms::Never,

@@ -10,13 +10,38 @@ use crate::report::finding::Finding;
 use crate::text::context::Context;
 use crate::text::element::Element;
 use mozzi::SE3;
+use mozzi::Vec3;
+use std::rc::Rc;
+
+/// More copies of one <replicate>, or of those inside each other, are refused.
+const MOST_COPIES: usize = 10_000;
+
+/// What surrounds the elements of a body.
+#[derive(Clone)]
+pub(crate) struct Around {
+    /// The frame, relative to the body's.
+    pub T: SE3,
+    /// The default class.
+    pub class: Class,
+    pub depth: usize,
+    /// What <replicate> adds to names.
+    pub suffix: Rc<str>,
+    /// The number of copies that this is one of.
+    pub copies: usize,
+}
+
+impl Around {
+    pub fn new(class: Class) -> Self {
+        Around { T: SE3::identity(), class, depth: 0, suffix: "".into(), copies: 1 }
+    }
+}
 
 /// An element of a body, with the configuration of its frame relative to the body's.
 pub(crate) struct Inside<'a> {
     pub item: Item<'a>,
     pub T: SE3,
-    /// The default class of its contents.
-    pub class: Class,
+    /// Of its contents.
+    pub around: Around,
 }
 
 /// The contents of a body, each kind in the order of the file.
@@ -32,16 +57,10 @@ pub(crate) struct Contents<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// Adds the contents of an element whose frame is at T relative to the body's.
-    pub fn gather(
-        &mut self,
-        element: &Element<'a>,
-        T: SE3,
-        class: Class,
-        depth: usize,
-        contents: &mut Contents<'a>,
-        cx: &mut Context,
-    ) {
+    /// Adds the contents of an element.
+    pub fn gather(&mut self, element: &Element<'a>, around: &Around, contents: &mut Contents<'a>, cx: &mut Context) {
+        let Around { T, class, depth, .. } = *around;
+        let inside = |item| Inside { item, T, around: around.clone() };
         if is_too_deep(element, depth, cx) {
             return;
         }
@@ -58,19 +77,21 @@ impl<'a> Model<'a> {
                         "geom" => &mut contents.geoms,
                         _ => &mut contents.sites,
                     };
-                    list.push(Inside { item, T, class });
+                    list.push(inside(item));
                 }
-                "body" => contents.bodies.push(Inside { item: Item::plain(&child), T, class }),
+                "body" => contents.bodies.push(inside(Item::plain(&child))),
                 "inertial" => contents.inertial = contents.inertial.take().or(Some(Item::plain(&child))),
-                "freejoint" => contents.free.push(Inside { item: Item::plain(&child), T, class }), // takes no defaults
+                "freejoint" => contents.free.push(inside(Item::plain(&child))), // takes no defaults
                 "frame" => {
                     child.check_attributes(&vocabulary::FRAME, cx);
                     child.check_children(&vocabulary::FRAME, cx);
                     let class = self.classes.named(&child, "childclass", class, cx);
                     let frame = T * pose(&Item::plain(&child), &self.compiler, cx);
-                    self.gather(&child, frame, class, depth + 1, contents, cx);
+                    let around = Around { T: frame, class, depth: depth + 1, ..around.clone() };
+                    self.gather(&child, &around, contents, cx);
                 }
-                name @ ("replicate" | "attach" | "composite" | "flexcomp") => {
+                "replicate" => self.replicate(&child, around, contents, cx),
+                name @ ("attach" | "composite" | "flexcomp") => {
                     let message = format!("{}: has <{name}>, which mozzi does not expand", element.subject);
                     let help = "let MuJoCo expand it: load the model there and save it as XML";
                     cx.findings.add(Finding::error("unsupported_element", child.span(), message).help(help));
@@ -79,6 +100,38 @@ impl<'a> Model<'a> {
                 "plugin" => self.ignored.force("plugin", &Item::plain(&child), "plugin", "a plugin"),
                 _ => {}
             }
+        }
+    }
+
+    /// Copies of the contents: copy i is turned by i times the angles, and is `offset` away from the one before, in the
+    /// axes of that one. Names get its number.
+    fn replicate(&mut self, element: &Element<'a>, around: &Around, contents: &mut Contents<'a>, cx: &mut Context) {
+        element.check_attributes(&vocabulary::REPLICATE, cx);
+        element.check_children(&vocabulary::REPLICATE, cx);
+        let item = Item::plain(element);
+        if element.required("count", cx).is_none() {
+            return;
+        }
+        let given = item.number("count", 0.0, cx);
+        let copies = given * around.copies as f64;
+        if !(given >= 0.0 && given.fract() == 0.0 && copies <= MOST_COPIES as f64) {
+            let message =
+                format!("count: is {given}, expected a whole number, and at most {MOST_COPIES} copies in all");
+            cx.findings.add(item.error("wrong_count", "count", &message));
+            return;
+        }
+        let class = self.classes.named(element, "childclass", around.class, cx);
+        let offset = Vec3(item.vector::<3>("offset", cx).unwrap_or_default());
+        let euler = item.vector::<3>("euler", cx).unwrap_or_default();
+        let separator = item.value("sep").map_or("", |value| value.text);
+        let (digits, mut p) = (given.to_string().len(), Vec3::zero());
+        for i in 0..given as usize {
+            let R = self.compiler.euler(euler.map(|angle| i as f64 * angle));
+            let T = around.T * SE3 { R, p };
+            p = p + R.matrix() * offset;
+            let suffix = format!("{separator}{i:0digits$}{}", around.suffix).into();
+            let around = Around { T, class, depth: around.depth + 1, suffix, copies: copies as usize };
+            self.gather(element, &around, contents, cx);
         }
     }
 }

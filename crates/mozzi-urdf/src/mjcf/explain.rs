@@ -53,9 +53,9 @@ pub(crate) const CODES: [Entry; 43] = [
          as 0. For the page: a mesh that has no file, because the model gives its vertices, is not drawn.",
         "no action is needed, unless you need the total mass"),
     ("include",
-        "An included file cannot be read. Files are searched in the folder of the main file, also if an included \
-         file names them.",
-        "files are searched in the folder of the main file"),
+        "An included file cannot be read. Files are searched in the folder of the main file, then next to the file \
+         that includes them.",
+        "files are searched in the folder of the main file, then next to the file that includes them"),
     ("indefinite_inertia",
         "The inertia of a rigid body has a negative principal moment about its centre of mass. Rotation about \
          that axis would have a negative kinetic energy, and forward dynamics would be meaningless. All bodies \
@@ -75,8 +75,9 @@ pub(crate) const CODES: [Entry; 43] = [
          forward dynamics would divide by zero and returns an error that names the joint.",
         "give the body an <inertial>, or a geom with a mass"),
     ("mesh_inertia",
-        "A moving body has no <inertial>, and one of the geoms that define its inertia is a mesh. mozzi does not \
-         read meshes. MuJoCo can compute the inertia and write it into the file (saveinertial).",
+        "A moving body has no <inertial>, and one of the geoms that define its inertia is a mesh whose inertia cannot be \
+         computed: its file is missing or is no STL, OBJ or MSH, it bounds no volume, or a plugin makes it. MuJoCo can \
+         compute the inertia and write it into the file (saveinertial).",
         "give the body an <inertial>, or the geom mass=\"0\""),
     ("mimic_of_several_axes",
         "A coupling includes a ball or a free joint. These have several positions, and the coupling is not defined.",

@@ -14,10 +14,10 @@ use mozzi::model::description::{ConstraintKind, JointKind};
 impl<'a> Model<'a> {
     /// Whether the next link's body is free. Adds its joint with this initial pose; reports an invalid free joint.
     pub fn free(&mut self, contents: &Contents<'a>, carrier: usize, body: &str, start: SE3, cx: &mut Context) -> bool {
-        let Some(Inside { item, .. }) = contents.free.first() else { return false };
+        let Some(Inside { item, around, .. }) = contents.free.first() else { return false };
         self.tree.degrees += contents.free.len();
         let is_word = item.element.name() == "freejoint";
-        let name = Name::of(&item.element.called("joint"), format!("{body}:free"), cx);
+        let name = Name::of(&item.element.called("joint"), format!("{body}:free"), cx).suffixed(&around.suffix);
         let subject =
             name.given.as_ref().map_or_else(|| item.element.subject.clone(), |_| format!("joint `{}`", name.shown()));
         let item = Item { element: item.element.called(subject), ..item.clone() };

@@ -2,9 +2,14 @@
 
 use super::Model;
 use super::attributes::Item;
+use super::mesh::Body;
 use super::orientation::{pose, to_z, unit};
+use super::shell;
+use crate::geometry::moments::Moments;
 use crate::text::context::Context;
-use mozzi::{SE3, Solid, SpatialInertia, Vec3};
+use mozzi::linalg::Mat3;
+use mozzi::{SE3, SO3, Solid, SpatialInertia, Vec3};
+use nalgebra::{Matrix3, SymmetricEigen};
 
 /// MuJoCo's default density, that of water: kg/m³.
 const DENSITY: f64 = 1000.0;
@@ -16,8 +21,8 @@ pub(crate) const TYPES: [&str; 9] =
 pub(crate) enum Mass {
     /// In the body's frame.
     Known(SpatialInertia),
-    /// It needs a mesh, which is not read.
-    Mesh,
+    /// The reason why its mesh cannot be read.
+    Mesh(String),
     /// It is invalid, already reported.
     Wrong,
 }
@@ -38,23 +43,41 @@ impl Model<'_> {
                 return Mass::Wrong;
             }
         }
-        let kind = item.word("type", &TYPES, cx).unwrap_or("sphere");
+        let (kind, scale) = (item.word("type", &TYPES, cx).unwrap_or("sphere"), item.number("fitscale", 1.0, cx));
         if mass.map_or(density, |[mass]| mass) == 0.0 || kind == "plane" || kind == "hfield" {
             return nothing;
         }
-        if item.has("mesh") || kind == "mesh" || kind == "sdf" {
-            return Mass::Mesh;
-        }
-        if item.flag("shellinertia", false, cx) {
-            let message = "shellinertia: is the inertia of a hollow body, which mozzi does not compute";
-            let help = "give the body an <inertial>";
-            cx.findings.add(item.error("unsupported_attribute", "shellinertia", message).help(help));
-            return Mass::Wrong;
-        }
-        let Some((solid, frame)) = self.solid(item, kind, cx) else { return Mass::Wrong };
-        let inertia = match mass {
-            Some([mass]) => solid.inertia(mass),
-            None => solid.of_density(density),
+        let mass = mass.map(|[mass]| mass);
+        let is_shell = item.flag("shellinertia", false, cx);
+        let (solid, frame) = if item.has("mesh") || kind == "mesh" || kind == "sdf" {
+            let name = item.value("mesh").map_or("", |value| value.text);
+            let frame = pose(item, &self.compiler, cx);
+            let body = self.meshes.body(name, cx);
+            match body.as_ref() {
+                Err(why) => return Mass::Mesh(why.clone()),
+                Ok(body) if kind == "mesh" || kind == "sdf" => {
+                    if is_shell {
+                        let message =
+                            "shellinertia: is not for a mesh, expected inertia=\"shell\" of the mesh in <asset>";
+                        cx.findings.add(item.error("unsupported_attribute", "shellinertia", message));
+                        return Mass::Wrong;
+                    }
+                    let Moments { size, center, I } = body.moments;
+                    let mass = mass.unwrap_or(density * size);
+                    return Mass::Known(SpatialInertia::new(mass, center, I * (mass / size)).transformed(T * frame));
+                }
+                Ok(body) => {
+                    let (solid, shift) = fitted(body, kind, scale, self.compiler.fit_aabb);
+                    (solid, frame * shift)
+                }
+            }
+        } else {
+            let Some(found) = self.solid(item, kind, cx) else { return Mass::Wrong };
+            found
+        };
+        let inertia = match is_shell {
+            true => shell::inertia(solid, mass.unwrap_or_else(|| density * shell::area(solid))),
+            false => solid.inertia(mass.unwrap_or_else(|| density * solid.volume())),
         };
         Mass::Known(inertia.transformed(T * frame))
     }
@@ -93,14 +116,56 @@ impl Model<'_> {
             cx.findings.add(item.error("missing_size", "size", &message));
             return None;
         }
-        let [x, y, _] = size;
-        let solid = match kind {
-            "sphere" => Solid::Sphere { radius: x },
-            "capsule" => Solid::Capsule { radius: x, length: 2.0 * y },
-            "cylinder" => Solid::Cylinder { radius: x, length: 2.0 * y },
-            "ellipsoid" => Solid::Ellipsoid(size),
-            _ => Solid::Box(size.map(|x| 2.0 * x)),
-        };
-        Some((solid, frame))
+        Some((of_size(kind, size), frame))
     }
+}
+
+/// A solid of MuJoCo's half sizes.
+fn of_size(kind: &str, size: [f64; 3]) -> Solid {
+    let [x, y, _] = size;
+    match kind {
+        "sphere" => Solid::Sphere { radius: x },
+        "capsule" => Solid::Capsule { radius: x, length: 2.0 * y },
+        "cylinder" => Solid::Cylinder { radius: x, length: 2.0 * y },
+        "ellipsoid" => Solid::Ellipsoid(size),
+        _ => Solid::Box(size.map(|x| 2.0 * x)),
+    }
+}
+
+/// The solid that MuJoCo fits to a mesh, in the mesh's principal axes, the longest along z: to the box with the mesh's
+/// moments, or to its bounding box.
+fn fitted(body: &Body, kind: &str, scale: f64, is_aabb: bool) -> (Solid, SE3) {
+    let Moments { size, center, I } = body.moments;
+    let rows = I.to_mat3().rows();
+    let eigen = SymmetricEigen::new(Matrix3::from_fn(|i, j| rows[i][j]));
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let column = |k: usize| Vec3([0, 1, 2].map(|i| eigen.eigenvectors[(i, order[k])]));
+    let (x, y) = (column(0), column(1));
+    let z = x.cross(y);
+    let R = SO3::from_matrix(Mat3::from_rows([x.0, y.0, z.0]).transpose()).unwrap_or(SO3::identity());
+    let (half, middle) = if is_aabb {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &vertex in &body.vertices {
+            let v = (R.inverse().matrix() * (vertex - center)).0;
+            low = [0, 1, 2].map(|k| low[k].min(v[k]));
+            high = [0, 1, 2].map(|k| high[k].max(v[k]));
+        }
+        ([0, 1, 2].map(|k| 0.5 * (high[k] - low[k])), Vec3([0, 1, 2].map(|k| 0.5 * (high[k] + low[k]))))
+    } else {
+        let moments = [0, 1, 2].map(|k| eigen.eigenvalues[order[k]] / size);
+        let whole: f64 = moments.iter().sum();
+        (moments.map(|moment| 0.5 * (6.0 * (whole - 2.0 * moment)).max(0.0).sqrt()), Vec3::zero())
+    };
+    let [a, b, c] = half;
+    let size = match (kind, is_aabb) {
+        ("sphere", true) => [a.max(b).max(c), 0.0, 0.0],
+        ("sphere", false) => [(a + b + c) / 3.0, 0.0, 0.0],
+        ("capsule", true) => [a.max(b), c - a.max(b), 0.0],
+        ("capsule", false) => [(a + b) / 2.0, (c - (a + b) / 4.0).max(0.0), 0.0],
+        ("cylinder", true) => [a.max(b), c, 0.0],
+        ("cylinder", false) => [(a + b) / 2.0, c, 0.0],
+        _ => half,
+    };
+    (of_size(kind, size.map(|x| scale * x)), SE3 { R, p: center + R.matrix() * middle })
 }

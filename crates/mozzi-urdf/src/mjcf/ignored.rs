@@ -116,9 +116,7 @@ impl Ignored {
                 "custom" => "it does not affect the dynamics",
                 "extension" => "plugins are not computed",
                 "size" => "it sets MuJoCo's memory size",
-                "asset" => {
-                    "it affects appearance and contacts; a mesh whose inertia is needed is refused where it is used"
-                }
+                "asset" => "it affects appearance and contacts, and inertias that are computed from meshes",
                 "visual" | "statistic" | "deformable" => "it affects appearance only",
                 _ => continue,
             };

@@ -45,9 +45,11 @@ pub(crate) fn gather(
                 return None;
             }
         };
+        // an included file's own includes may also be next to it
+        let beside = Path::new(&*source.name).parent().filter(|_| next > 0).map(Path::to_path_buf);
         for include in includes {
             let base = sources.last().map_or(0, |last| last.base + last.text.len() + 1);
-            match open(&include, (folder, given), &mut known) {
+            match open(&include, (folder, given), beside.as_deref(), &mut known) {
                 Ok((name, content)) if sources.len() < MOST_FILES && bytes + content.len() <= MOST_BYTES => {
                     bytes += content.len();
                     let mut findings = Findings::default();
@@ -100,6 +102,7 @@ fn includes_of(source: &Source) -> Result<Vec<Include>, Finding> {
 fn open(
     include: &Include,
     (folder, given): Files,
+    beside: Option<&Path>,
     known: &mut BTreeSet<PathBuf>,
 ) -> Result<(String, Vec<u8>), Finding> {
     let error = |code, message: String| Finding::error(code, include.span.clone(), message);
@@ -117,11 +120,14 @@ fn open(
     if file.contains("://") || file.starts_with(r"\\") || file.starts_with("//") {
         return Err(error("include", format!("include: `{shown}` is not on this machine, expected a file")));
     }
+    let is_there = |path: &PathBuf| given.text_of(path).is_some() || path.is_file();
     let path = folder.join(file);
+    let other = beside.map(|beside| beside.join(file)).filter(|other| !is_there(&path) && is_there(other));
+    let path = other.unwrap_or(path);
     let text = given.text_of(&path);
     let fails = |why: String| {
         error("include", format!("include: `{shown}` cannot be read: {why}"))
-            .help("files are searched in the folder of the main file")
+            .help("files are searched in the folder of the main file, then next to the file that includes them")
     };
     let real = match (path.canonicalize(), text) {
         (Ok(real), _) if text.is_some() || real.is_file() => real,

@@ -20,6 +20,7 @@ impl<'a> Model<'a> {
         let number = self.tree.degrees;
         self.tree.degrees += 1;
         let name = Name::of(&inside.item.element.called("joint"), format!("joint{number}"), cx);
+        let name = name.suffixed(&inside.around.suffix);
         let shown = name.shown();
         let element = inside.item.element.called(format!("joint `{shown}`"));
         let item = Item { element, ..inside.item.clone() };

@@ -5,9 +5,9 @@
 //! decides, not the file's name.
 //!
 //! # What is read
-//! Bodies, frames and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls,
+//! Bodies, frames, `replicate` and sites with every way to write an orientation; free bodies of the world; hinges, slides and balls,
 //! several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`, `springref` and
-//! `springdamper`; inertias, given or computed from geoms; default classes; includes; compiler settings that affect the
+//! `springdamper`; inertias, given or computed from geoms, also from meshes; default classes; includes; compiler settings that affect the
 //! tree; gravity; keyframes; a linear equality of two joints, as a mimic joint; other equalities of joints, `connect`
 //! and `weld`, as constraints; the armature of actuators, and of fixed tendons, as rotors that several joints turn.
 //!
@@ -18,6 +18,9 @@
 //!   axes, angular first. The world, and other bodies in it, are then not links. Any other free body is attached to the
 //!   world by a free joint with the same positions and velocities.
 //! - A ball has MuJoCo's quaternion, angular velocity and spring.
+//! - The inertia of a mesh (STL, OBJ, MSH, or vertices in the model) is that of its convex hull, of what its triangles
+//!   bound, of MuJoCo's older pyramids, or of the shell, as its `inertia` says; solids are fitted to meshes, and
+//!   `shellinertia` is computed, as in MuJoCo. Mesh files are relative to the model's.
 //! - Unnamed elements are named by their number in MuJoCo: `body3`, `joint1`.
 //! - Equalities are rigid here; MuJoCo's solver keeps them approximately: `solref`, `solimp` and `torquescale` are not
 //!   used. Anchor {a} is in body 1 and {b} in body 2, at the point that coincides with it in the file's own
@@ -29,7 +32,7 @@
 //!
 //! # What is not read
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
-//!   flexible bodies, `replicate`, `attach` and `composite`, meshes whose inertia is needed, shells.
+//!   flexible bodies, `attach` and `composite`, meshes whose inertia is needed and unknown.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
 //!   Simulations may add the forces of actuators and gravity compensation: [`Actuated`].
 //! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without
@@ -59,12 +62,15 @@ mod inertial;
 mod joint;
 mod keyframe;
 mod law;
+mod mesh;
 mod option;
 mod orientation;
+mod principal;
 mod rotor;
 #[cfg(test)]
 mod schema;
 mod shapes;
+mod shell;
 mod spring;
 mod tree;
 mod vocabulary;
@@ -88,6 +94,7 @@ use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
 use keyframe::Key;
+use mesh::Meshes;
 use mozzi::Description;
 use option::Options;
 use shapes::Shapes;
@@ -104,6 +111,7 @@ pub(crate) struct Model<'a> {
     pub compiler: Compiler,
     pub options: Options,
     pub classes: Classes<'a>,
+    pub meshes: Meshes<'a>,
     pub ignored: Ignored,
     pub tree: Tree,
     /// `None` if shapes are not read.
@@ -165,10 +173,10 @@ fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut 
         }
     }
     let pages = Pages::new(pages, includes);
-    read_model(&Element::root(&pages, "mujoco")?, wanted, cx)
+    read_model(&Element::root(&pages, "mujoco")?, files, wanted, cx)
 }
 
-fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> {
+fn read_model<'a>(root: &Element<'a>, files: Files<'a>, wanted: Wanted, cx: &mut Context) -> Option<Read> {
     if root.name() != "mujoco" {
         let message =
             format!("the root element is <{}>, expected <mujoco>", crate::urdf::vocabulary::shown(root.written_name()));
@@ -178,14 +186,16 @@ fn read_model(root: &Element, wanted: Wanted, cx: &mut Context) -> Option<Read> 
     }
     root.check_attributes(&vocabulary::MUJOCO, cx);
     root.check_children(&vocabulary::MUJOCO, cx);
-    let sections: Vec<Element> = root.elements().filter(|child| !child.has_prefix()).collect();
+    let sections: Vec<Element<'a>> = root.elements().filter(|child| !child.has_prefix()).collect();
     let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
 
     // the order of the sections does not matter
+    let (compiler, classes) = (Compiler::read(of("compiler"), cx), Classes::read(of("default"), cx));
     let mut model = Model {
-        compiler: Compiler::read(of("compiler"), cx),
+        meshes: Meshes::new(&sections, &classes, compiler.strips, files, cx),
+        compiler,
         options: Options::default(),
-        classes: Classes::read(of("default"), cx),
+        classes,
         ignored: Ignored::default(),
         tree: Tree::new(root),
         shapes: None,

@@ -101,8 +101,21 @@ fn model(path: &str, attribute: &str) -> String {
 }
 
 /// Attributes whose values are names.
-const NAMES: [&str; 11] =
-    ["name", "class", "childclass", "body1", "body2", "joint1", "joint2", "site1", "site2", "model", "mesh"];
+const NAMES: [&str; 13] = [
+    "name",
+    "class",
+    "childclass",
+    "body1",
+    "body2",
+    "joint1",
+    "joint2",
+    "site1",
+    "site2",
+    "model",
+    "mesh",
+    "assetdir",
+    "meshdir",
+];
 
 #[test]
 fn every_word_is_in_a_class() {

@@ -5,15 +5,15 @@ use super::attributes::Item;
 use super::class::{Class, Classes};
 use super::contents::Inside;
 use super::geom::TYPES;
+use super::mesh::Mesh;
 use super::orientation::pose;
 use crate::geometry::{Form, Geometry, Purpose, Shape};
 use crate::report::finding::Finding;
 use crate::text::context::Context;
 use crate::text::element::Element;
 use crate::urdf::vocabulary::shown;
-use mozzi::{SE3, SO3, Solid, Vec3};
+use mozzi::{SE3, Solid, Vec3};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// MuJoCo does not draw groups from this one on; by convention they contain the shapes for contacts.
 const FIRST_HIDDEN_GROUP: f64 = 3.0;
@@ -21,19 +21,9 @@ const FIRST_HIDDEN_GROUP: f64 = 3.0;
 /// Attributes of MuJoCo's soft contacts, which rigid contacts do not have.
 const SOFT: [&str; 5] = ["margin", "gap", "solref", "solimp", "solmix"];
 
-/// A mesh of `<asset>`.
-#[derive(Clone)]
-struct Mesh {
-    file: String,
-    scale: [f64; 3],
-    /// The frame in the file's coordinates that becomes the geom's frame.
-    reference: SE3,
-}
-
 /// The assets that geoms refer to, and the shapes found so far.
 #[derive(Default)]
 pub(crate) struct Shapes {
-    meshes: BTreeMap<String, Mesh>,
     colors: BTreeMap<String, [f64; 4]>,
     /// With the index of their link.
     found: Vec<(usize, Shape)>,
@@ -46,19 +36,12 @@ pub(crate) struct Shapes {
 }
 
 impl Shapes {
-    /// The meshes and colours of the assets.
+    /// The colours of the assets.
     pub fn new<'a>(sections: &[Element<'a>], classes: &Classes<'a>) -> Self {
         let mut shapes = Shapes::default();
         let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
-        let (mut folder, mut strips) = (String::new(), false);
-        for compiler in of("compiler") {
-            let text = |name| compiler.attribute(name).map(|value| value.text);
-            folder = text("meshdir").or(text("assetdir")).map_or(folder, str::to_string);
-            strips = text("strippath").map_or(strips, |text| text == "true");
-        }
         for asset in of("asset").flat_map(Element::elements) {
             match asset.name() {
-                "mesh" => shapes.mesh(classes, asset, &folder, strips),
                 "material" => {
                     let Some(name) = asset.attribute("name") else { continue };
                     let item = classes.item(asset, "material", Class::MAIN, &mut shapes.cx);
@@ -69,28 +52,6 @@ impl Shapes {
             }
         }
         shapes
-    }
-
-    /// A mesh without a name is named after its file; one without a file is defined by vertices and is not drawn.
-    fn mesh<'a>(&mut self, classes: &Classes<'a>, element: Element<'a>, folder: &str, strips: bool) {
-        let Some(file) = element.attribute("file").map(|value| value.text) else { return };
-        let path =
-            if strips { Path::new(file).file_name().map_or(Path::new(file), Path::new) } else { Path::new(file) };
-        let name = element.attribute("name").map(|value| value.text.to_string());
-        let stem = || Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let Some(name) = name.or_else(stem) else { return };
-        let item = classes.item(element, "mesh", Class::MAIN, &mut self.cx);
-        let scale = item.vector::<3>("scale", &mut self.cx).unwrap_or([1.0; 3]);
-        let p = Vec3(item.vector::<3>("refpos", &mut self.cx).unwrap_or_default());
-        let [w, x, y, z] = item.vector::<4>("refquat", &mut self.cx).unwrap_or([1.0, 0.0, 0.0, 0.0]);
-        let length = (w * w + x * x + y * y + z * z).sqrt();
-        let R = if length > 0.0 {
-            SO3::from_quaternion(w / length, Vec3([x / length, y / length, z / length]))
-        } else {
-            SO3::identity()
-        };
-        let file = Path::new(folder).join(path).to_string_lossy().into_owned();
-        self.meshes.insert(name, Mesh { file, scale, reference: SE3 { R, p } });
     }
 
     /// The shapes, by the names of their links.
@@ -150,13 +111,14 @@ impl<'a> Model<'a> {
         let friction = Some(if has_own { item.overlaid::<3>("friction", &mut shapes.cx)[0] } else { 1.0 });
         let (form, frame) = match item.value("mesh") {
             Some(mesh) => {
-                let Some(mesh) = shapes.meshes.get(mesh.text).cloned() else {
+                let found = self.meshes.named(mesh.text, &mut shapes.cx);
+                let Some((file, found)) = found.and_then(|found| Some((found.file.clone()?, found))) else {
                     let message = format!("{}: mesh: `{}` has no file", item.element.subject, shown(mesh.text));
                     let help = "it is not drawn: meshes of <asset> are drawn from their files";
                     shapes.cx.findings.add(Finding::warning("ignored_mesh", mesh.span, message).help(help));
                     return None;
                 };
-                let (form, shift) = mesh_form(mesh);
+                let (form, shift) = mesh_form(file, &found);
                 (form, pose(item, &self.compiler, &mut shapes.cx) * shift)
             }
             None => {
@@ -177,7 +139,7 @@ fn touches(item: &Item, cx: &mut Context) -> bool {
 
 /// v' = S Rᵀ(v − p) of a vertex v: a scale of the file's coordinates, then a rigid motion. If S is not the same in all
 /// directions, R has to be the identity, as it is in published models.
-fn mesh_form(Mesh { file, scale, reference }: Mesh) -> (Form, SE3) {
+fn mesh_form(file: String, &Mesh { scale, reference, .. }: &Mesh) -> (Form, SE3) {
     let inverse = reference.R.inverse();
     let [x, y, z] = (inverse.matrix() * reference.p).0;
     let p = Vec3([-scale[0] * x, -scale[1] * y, -scale[2] * z]);

@@ -25,6 +25,14 @@ impl Name {
         Name { given: value.map(|value| value.text.to_string()), otherwise }
     }
 
+    /// With what <replicate> adds to it.
+    pub fn suffixed(mut self, suffix: &str) -> Self {
+        if let Some(given) = &mut self.given {
+            given.push_str(suffix);
+        }
+        self
+    }
+
     pub fn generated(otherwise: String) -> Self {
         Name { given: None, otherwise }
     }

@@ -33,27 +33,27 @@ pub(crate) const COMPILER: Vocabulary = Vocabulary {
         "balanceinertia",
         "boundinertia",
         "boundmass",
+        "assetdir",
         "coordinate",
         "eulerseq",
+        "fitaabb",
         "inertiafromgeom",
         "inertiagrouprange",
+        "meshdir",
         "settotalmass",
+        "strippath",
     ],
     once: &["lengthrange"],
     listed: &[
-        "assetdir",
         "conflict",
         "convexhull",
         "discardvisual",
         "exactmeshinertia",
-        "fitaabb",
         "fusestatic",
-        "meshdir",
         "passthrough",
         "savecanonical",
         "savecompiled",
         "saveinertial",
-        "strippath",
         "texturedir",
         "usethread",
     ],
@@ -200,6 +200,12 @@ pub(crate) const FRAME: Vocabulary = Vocabulary {
     silent: &["flexcomp"],
     ..NOTHING
 };
+pub(crate) const REPLICATE: Vocabulary = Vocabulary {
+    attributes: &["count", "offset", "euler", "sep", "childclass"],
+    many: &INSIDE,
+    silent: &["flexcomp"],
+    ..NOTHING
+};
 pub(crate) const INERTIAL: Vocabulary = Vocabulary {
     attributes: &["pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "mass", "diaginertia", "fullinertia"],
     ..NOTHING
@@ -255,6 +261,7 @@ pub(crate) const GEOM: Vocabulary = Vocabulary {
         "mass",
         "density",
         "mesh",
+        "fitscale",
         "group",
         "shellinertia",
     ],
@@ -264,7 +271,6 @@ pub(crate) const GEOM: Vocabulary = Vocabulary {
         "conaffinity",
         "condim",
         "contype",
-        "fitscale",
         "fluidcoef",
         "fluidshape",
         "friction",

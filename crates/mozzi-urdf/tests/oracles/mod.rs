@@ -14,9 +14,16 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Accepted reasons to refuse a model of MJCF: it is more than a tree, or its numbers are in meshes.
-const CLOSURES: [&str; 5] =
-    ["unsupported_tendon", "unsupported_equality", "mesh_inertia", "actuator_armature", "unsupported_attribute"];
+/// Accepted reasons to refuse a model of MJCF: it is more than a tree, a part of it is in another model, or its numbers are in
+/// meshes that cannot be read.
+const CLOSURES: [&str; 6] = [
+    "unsupported_tendon",
+    "unsupported_equality",
+    "unsupported_element",
+    "mesh_inertia",
+    "actuator_armature",
+    "unsupported_attribute",
+];
 
 /// The robot of a file of oracles, without friction and springs, and without armature if the oracle has none. The
 /// reason, if mozzi refuses the model for good reason.

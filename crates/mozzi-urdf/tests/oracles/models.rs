@@ -20,10 +20,7 @@ Every MJCF file of PyPI's `gymnasium` 1.4.0 and `dm_control` 1.0.50, as mozzi re
 /// The meaning of each refusal; one that is missing here fails the test.
 const WHY: [(&str, &str); 8] = [
     ("include", "An included file is missing; MuJoCo reports the same."),
-    (
-        "mesh_inertia",
-        "Inertias would have to be computed from meshes, which mozzi does not read. MuJoCo's `saveinertial` writes them into the file.",
-    ),
+    ("mesh_inertia", "Inertias would have to be computed from meshes that are not in the package, or bound no volume."),
     (
         "unsupported_attribute",
         "`springdamper` chooses a spring by the mass matrix, which is singular without the inertias of meshes, which mozzi does not read.",

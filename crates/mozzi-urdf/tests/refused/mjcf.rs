@@ -36,19 +36,25 @@ fn what_has_no_place_is_refused_by_name() {
             "joint `j`: limits: go from 0.17453292519943295 to 0.3490658503988659, expected 0 and the ball's largest angle",
         ),
         (
-            body!("<§replicate count='3'/>"),
+            body!("<replicate count='§2.5'/>"),
+            "wrong_count",
+            "body `b`: replicate: count: is 2.5, expected a whole number, and at most 10000 copies in all",
+        ),
+        (
+            body!("<§attach model='m' prefix='p'/>"),
             "unsupported_element",
-            "body `b`: has <replicate>, which mozzi does not expand",
+            "body `b`: has <attach>, which mozzi does not expand",
         ),
         (
             body!("<joint/><geom name='hull' type='mesh' mesh='§hull'/>"),
             "mesh_inertia",
-            "geom `hull`: is a mesh, whose inertia is needed: mozzi does not read meshes",
+            "geom `hull`: mesh: its inertia is needed, and is unknown: there is no such mesh in <asset>",
         ),
         (
-            body!("<joint/><geom size='1' shellinertia='§true'/>"),
+            "<mujoco><asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/></asset><worldbody><body name='b'><joint/>\
+             <geom type='mesh' mesh='m' shellinertia='§true'/></body></worldbody></mujoco>",
             "unsupported_attribute",
-            "body `b`: geom: shellinertia: is the inertia of a hollow body, which mozzi does not compute",
+            "body `b`: geom: shellinertia: is not for a mesh, expected inertia=\"shell\" of the mesh in <asset>",
         ),
         (
             "<mujoco xmlns:xacro='http://www.ros.org/wiki/xacro'><§xacro:arm/></mujoco>",

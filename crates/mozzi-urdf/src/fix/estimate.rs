@@ -1,0 +1,57 @@
+//! Inertias from shapes and a density, for links that have none or that are doubted.
+
+use super::fit::Detail;
+use super::inertial::shortest;
+use super::{Proposal, with_robot};
+use crate::edit::element::{Editor, Tag};
+use crate::{EditError, Settings};
+use mozzi::linalg::Sym3;
+use mozzi::{SpatialInertia, Vec3};
+
+/// A proposal for each link with a readable shape: the convex hull of its shapes, filled with this density, kg/m³.
+/// A given mass of more than 0 is kept, and only its distribution is that of the shape.
+///
+/// # Errors
+/// As [`proposals`](super::proposals).
+pub fn estimates(file_name: &str, text: &str, density: f64, settings: &Settings) -> Result<Vec<Proposal>, EditError> {
+    with_robot(file_name, text, settings, Detail::All, |robot| {
+        let links = robot.root.children().filter(|tag| tag.name() == "link");
+        let all = links.filter_map(|link| {
+            let name = link.attribute("name")?;
+            let solid = robot.solid(name)?;
+            let old = robot.inertials.get(name).map(|inertial| (inertial, inertial.inertia(&inertial.numbers)));
+            let given = old.as_ref().map(|(_, G)| G.mass).filter(|mass| *mass > 0.0);
+            let mass = given.unwrap_or(density * solid.moments.size);
+            let new = SpatialInertia::new(mass, solid.moments.center, solid.moments.I * (mass / solid.moments.size));
+            let (editor, change) = match &old {
+                Some((inertial, _)) => inertial.write(&inertial.numbers_of(new)),
+                None => (inserted(link, new), format!("an <inertial> of {} kg is added", shortest(mass))),
+            };
+            let mut proposal = robot.proposal("estimated_inertia", link, &editor);
+            proposal.change = change;
+            let volume = mozzi::spatial::Rounded(solid.moments.size);
+            proposal.reason = match given {
+                Some(_) => format!("the hull of its shapes has {volume} m³, filled evenly with the given mass"),
+                None => format!("the hull of its shapes has {volume} m³, filled with {density:?} kg/m³"),
+            };
+            proposal.inertia = Some((name.to_string(), old.map_or(SpatialInertia::zero(), |(_, G)| G), new));
+            Some(proposal)
+        });
+        all.collect()
+    })
+}
+
+fn inserted<'a>(link: Tag<'a>, G: SpatialInertia) -> Editor<'a> {
+    let mut editor = Editor::new(link.text);
+    let Vec3(c) = G.center_of_mass();
+    let Sym3 { xx, xy, xz, yy, yz, zz } = G.about_center_of_mass();
+    let moments = super::inertial::MOMENTS.into_iter().zip([xx, xy, xz, yy, yz, zz]);
+    let moments: String = moments.map(|(name, x)| format!(" {name}=\"{}\"", shortest(x))).collect();
+    let element = format!(
+        "<inertial><origin xyz=\"{}\"/><mass value=\"{}\"/><inertia{moments}/></inertial>",
+        c.map(shortest).join(" "),
+        shortest(G.mass)
+    );
+    editor.insert_first(link, &element);
+    editor
+}

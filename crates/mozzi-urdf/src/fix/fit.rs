@@ -1,0 +1,151 @@
+//! What a link's shape says about its inertia.
+
+use crate::geometry::hull::convex_hull;
+use crate::geometry::moments::{Filling, Moments, moments};
+use crate::geometry::surface::Surface;
+use crate::geometry::{Form, Purpose, Shape, locate};
+use crate::{XacroArguments, files};
+use mozzi::{SpatialInertia, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// A larger mesh is not read.
+const MOST_BYTES: u64 = 64 << 20;
+/// No solid is denser, kg/m³: osmium has 22,600.
+const DENSEST: f64 = 25_000.0;
+/// Points on a circle.
+const AROUND: u32 = 24;
+/// Of a larger mesh, the points that are the farthest in as many directions are enough to compare with.
+const DIRECTIONS: usize = 300;
+
+/// The points of the hull that matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Detail {
+    Rough,
+    All,
+}
+
+/// The convex hull of a link's shapes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solid {
+    pub moments: Moments,
+    /// The corners of its bounding box in the link's axes.
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Solid {
+    fn of(points: &[Vec3]) -> Option<Self> {
+        let triangles = convex_hull(points)?;
+        let moments = moments(points, &triangles, Filling::Exact).ok()?;
+        let bound = |pick: fn(f64, f64) -> f64, start: f64| {
+            [0, 1, 2].map(|k| points.iter().fold(start, |x, p| pick(x, p.0[k])))
+        };
+        Some(Solid { moments, low: bound(f64::min, f64::INFINITY), high: bound(f64::max, f64::NEG_INFINITY) })
+    }
+
+    /// By how many powers of ten an inertia is away from the hull's, uniformly filled with the same mass: the worst of
+    /// its moments about the centre of mass, in the link's axes, and of what lies outside. Infinite if a moment is not
+    /// above 0.
+    pub fn misfit(&self, G: SpatialInertia) -> f64 {
+        let (found, filled) = (G.about_center_of_mass(), self.moments.I * (G.mass / self.moments.size));
+        let ratios = [(found.xx, filled.xx), (found.yy, filled.yy), (found.zz, filled.zz)];
+        let tenfold = |ratio: f64| if ratio > 0.0 { ratio.log10().abs() } else { f64::INFINITY };
+        let worst = ratios.map(|(a, b)| tenfold(a / b)).into_iter().fold(0.0, f64::max);
+        let density = G.mass / self.moments.size;
+        let too_dense = if density > DENSEST { (density / 1000.0).log10() } else { 0.0 };
+        // the centre's way out of the box, over its size
+        let c = G.center_of_mass().0;
+        let size = [0, 1, 2].map(|k| self.high[k] - self.low[k]);
+        let whole = size.into_iter().fold(0.0, f64::max);
+        let away = [0, 1, 2].map(|k| (self.low[k] - c[k]).max(c[k] - self.high[k]).max(0.0) / whole);
+        let away = away.into_iter().fold(0.0, f64::max);
+        worst.max(too_dense).max((1.0 + away).log10() * 2.0)
+    }
+
+    /// How far an inertia is from the hull's, all in all; for the choice among possible ones.
+    pub fn distance(&self, G: SpatialInertia) -> f64 {
+        let (found, filled) = (G.about_center_of_mass(), self.moments.I * (G.mass / self.moments.size));
+        let square = |a: f64, b: f64| if a / b > 0.0 { (a / b).log10().powi(2) } else { 100.0 };
+        let density = (G.mass / self.moments.size / 1000.0).log10();
+        let moments = square(found.xx, filled.xx) + square(found.yy, filled.yy) + square(found.zz, filled.zz);
+        moments + 0.1 * density * density
+    }
+}
+
+/// The solids of all links whose shapes can be read: the collision shapes, or else the visual ones.
+pub(super) fn solids(file: &Path, text: &str, detail: Detail) -> BTreeMap<String, Solid> {
+    let shapes = crate::geometry::parse_with(&file.to_string_lossy(), text, &XacroArguments::default()).shapes;
+    let mut links: BTreeMap<&str, Vec<&Shape>> = BTreeMap::new();
+    for shape in &shapes {
+        links.entry(&shape.link).or_default().push(shape);
+    }
+    let solid = |shapes: &[&Shape]| {
+        [Purpose::Collision, Purpose::Visual].into_iter().find_map(|purpose| {
+            let mut points = Vec::new();
+            for shape in shapes.iter().filter(|shape| shape.purpose == purpose) {
+                let mut own = points_of(shape, file)?;
+                if detail == Detail::Rough {
+                    own = farthest(own);
+                }
+                points.extend(own.into_iter().map(|p| shape.T.R.matrix() * p + shape.T.p));
+            }
+            Solid::of(&points)
+        })
+    };
+    links.into_iter().filter_map(|(link, shapes)| Some((link.to_string(), solid(&shapes)?))).collect()
+}
+
+/// The points that are the farthest in some direction of Fibonacci's sphere.
+fn farthest(points: Vec<Vec3>) -> Vec<Vec3> {
+    if points.len() <= DIRECTIONS {
+        return points;
+    }
+    let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let direction = |k: usize| {
+        let z = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
+        let ((sin, cos), r) = ((turn * k as f64).sin_cos(), (1.0 - z * z).sqrt());
+        Vec3([r * cos, r * sin, z])
+    };
+    let far = |e: Vec3| (0..points.len()).max_by(|&i, &j| points[i].dot(e).total_cmp(&points[j].dot(e)));
+    let chosen: BTreeSet<usize> = (0..DIRECTIONS).filter_map(|k| far(direction(k))).collect();
+    chosen.into_iter().map(|i| points[i]).collect()
+}
+
+/// Points whose hull is about the shape's; None if its mesh cannot be read.
+fn points_of(shape: &Shape, robot: &Path) -> Option<Vec<Vec3>> {
+    let ring = |radius: f64, z: f64| {
+        (0..AROUND).map(move |k| {
+            let (sin, cos) = (f64::from(k) / f64::from(AROUND) * std::f64::consts::TAU).sin_cos();
+            Vec3([radius * cos, radius * sin, z])
+        })
+    };
+    // rings of a ball about z = h, from its equator up or down
+    let dome = |radius: f64, h: f64, up: f64| {
+        (0..=6).flat_map(move |k| {
+            let (sin, cos) = (f64::from(k) / 6.0 * std::f64::consts::FRAC_PI_2).sin_cos();
+            ring(radius * cos, h + up * radius * sin)
+        })
+    };
+    Some(match &shape.form {
+        Form::Box { size } => {
+            let corner = |k: u32| Vec3([0, 1, 2].map(|i| (f64::from(k >> i & 1) - 0.5) * size[i]));
+            (0..8).map(corner).collect()
+        }
+        Form::Cylinder { radius, length } => ring(*radius, length / 2.0).chain(ring(*radius, -length / 2.0)).collect(),
+        Form::Capsule { radius, length } => {
+            dome(*radius, length / 2.0, 1.0).chain(dome(*radius, -length / 2.0, -1.0)).collect()
+        }
+        Form::Sphere { radius } => dome(*radius, 0.0, 1.0).chain(dome(*radius, 0.0, -1.0)).collect(),
+        Form::Ellipsoid { radii } => {
+            let ball = dome(1.0, 0.0, 1.0).chain(dome(1.0, 0.0, -1.0));
+            ball.map(|p| Vec3([0, 1, 2].map(|k| p.0[k] * radii[k]))).collect()
+        }
+        Form::Mesh { file, scale } => {
+            let path = locate(robot, file, None).ok()?;
+            let format = path.extension()?.to_str()?.to_ascii_lowercase();
+            let surface = Surface::read(&format, &files::read(&path, MOST_BYTES).ok()?).ok()?;
+            surface.vertices.iter().map(|v| Vec3([0, 1, 2].map(|k| v.0[k] * scale[k]))).collect()
+        }
+    })
+}

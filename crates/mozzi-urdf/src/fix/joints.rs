@@ -1,0 +1,66 @@
+//! Limits of joints that are reversed, or forbid every effort.
+
+use super::inertial::shortest;
+use super::{Proposal, Robot, twin};
+use crate::edit::element::{Editor, Tag};
+use crate::text::number::numbers;
+
+pub(super) fn proposals(robot: &Robot<'_>) -> Vec<Proposal> {
+    let joints: Vec<Tag<'_>> = robot.root.children().filter(|tag| tag.name() == "joint").collect();
+    let mut all = Vec::new();
+    for &joint in &joints {
+        all.extend(reversed(robot, joint));
+        all.extend(without_effort(robot, joint, &joints));
+    }
+    all
+}
+
+fn number(joint: Tag<'_>, name: &str) -> Option<f64> {
+    numbers::<1>(joint.child("limit")?.attribute(name)?).ok().map(|[x]| x)
+}
+
+fn reversed(robot: &Robot<'_>, joint: Tag<'_>) -> Option<Proposal> {
+    let (lower, upper) = (number(joint, "lower")?, number(joint, "upper")?);
+    if lower <= upper || !matches!(joint.attribute("type"), Some("revolute" | "prismatic")) {
+        return None;
+    }
+    let limit = joint.child("limit")?;
+    let mut editor = Editor::new(joint.text);
+    editor.set(limit, "lower", limit.attribute("upper"));
+    editor.set(limit, "upper", limit.attribute("lower"));
+    let mut proposal = robot.proposal("reversed_limit", joint, &editor);
+    let [low, high] = [lower, upper].map(shortest);
+    proposal.change = format!("lower {low} → {high}, upper {high} → {low}");
+    proposal.reason = "the lower limit is above the upper one".to_string();
+    Some(proposal)
+}
+
+/// The effort of the joint on the other side, or the one that all joints of this kind and speed have.
+fn without_effort(robot: &Robot<'_>, joint: Tag<'_>, joints: &[Tag<'_>]) -> Option<Proposal> {
+    let kind = joint.attribute("type").filter(|kind| matches!(*kind, "revolute" | "prismatic" | "continuous"))?;
+    if number(joint, "effort") != Some(0.0) || joint.child("mimic").is_some() {
+        return None;
+    }
+    let others = || joints.iter().filter(|other| other.attribute("type") == Some(kind) && other.node != joint.node);
+    let effort = |other: &Tag<'_>| number(*other, "effort").filter(|effort| *effort > 0.0);
+    let names = twin::names(joint.attribute("name")?);
+    let twin = names.iter().find_map(|name| {
+        let other = others().find(|other| other.attribute("name") == Some(name.as_str()))?;
+        Some((effort(other)?, format!("joint `{name}`, its counterpart, has this one")))
+    });
+    let alike = || {
+        let velocity = number(joint, "velocity")?;
+        let same = others().filter(|other| number(**other, "velocity") == Some(velocity));
+        let efforts: Vec<f64> = same.map(|other| number(*other, "effort").unwrap_or(0.0)).collect();
+        let first = *efforts.first().filter(|first| **first > 0.0)?;
+        let is_one = efforts.len() > 1 && efforts.iter().all(|effort| *effort == first);
+        is_one.then(|| (first, "all other joints of its kind and speed have this one".to_string()))
+    };
+    let (effort, evidence) = twin.or_else(alike)?;
+    let mut editor = Editor::new(joint.text);
+    editor.set(joint.child("limit")?, "effort", Some(&shortest(effort)));
+    let mut proposal = robot.proposal("zero_effort", joint, &editor);
+    proposal.change = format!("effort 0 → {}", shortest(effort));
+    proposal.reason = format!("a limit of effort of 0 forbids every torque; {evidence}");
+    Some(proposal)
+}
