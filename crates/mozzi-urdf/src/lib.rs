@@ -1,5 +1,5 @@
-//! Reads robot descriptions in URDF, and in MuJoCo's MJCF (see [`mjcf`]): text in, [`Description`] out, and diagnostics
-//! that point at the place.
+//! Reads robot descriptions in URDF, MuJoCo's MJCF (see [`mjcf`]) and SDFormat (see [`sdf`]): text in, [`Description`]
+//! out, and diagnostics that point at the place.
 //!
 //! No silent guesses: whatever is wrong is an error, and all errors are reported together; suspicious content is a
 //! warning.
@@ -60,9 +60,11 @@ pub mod geometry;
 pub mod json;
 pub mod mjcf;
 mod report;
+pub mod sdf;
 mod settings;
 mod text;
 mod urdf;
+mod written;
 
 pub use edit::{EditError, EditedFile, drives_of_fixed_joints, edit, edit_files, edit_with_old_values};
 pub use mozzi::model::Severity;
@@ -79,6 +81,7 @@ pub use settings::{Policy, Settings};
 pub use text::expansion::{expanded, taken_from_host};
 pub use urdf::expressible::expressible;
 pub use urdf::write::{NotUrdf, write};
+pub use written::{NotWritten, Written};
 
 use mozzi::{Description, Model};
 use report::finding::Findings;
@@ -175,6 +178,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
         let result = match dialect {
             Dialect::Urdf => read_urdf(&sources[0], &mut cx),
             Dialect::Mjcf => mjcf::read(&mut sources, folder, &settings.xacro, &mut cx),
+            Dialect::Sdf => sdf::read(&mut sources, folder, &settings.xacro, &mut cx),
         };
         findings = cx.findings;
         description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));

@@ -67,6 +67,16 @@ impl<'a> Element<'a> {
         self.node.text().unwrap_or_default()
     }
 
+    /// The text inside without white space around it, and its place; the name's place if there is none.
+    pub fn content(&self) -> Value<'a> {
+        let text = self.node.children().find(|node| node.is_text() && !node.text().unwrap_or_default().trim().is_empty());
+        let Some(node) = text else { return Value { text: "", span: self.span() } };
+        let raw = self.place(node.range());
+        let written = self.raw(&raw);
+        let start = raw.start + written.len() - written.trim_start().len();
+        Value { text: node.text().unwrap_or_default().trim(), span: start..start + written.trim().len() }
+    }
+
     /// The place of the name in the start tag.
     pub fn span(&self) -> Range<usize> {
         let start = self.node.range().start + 1;

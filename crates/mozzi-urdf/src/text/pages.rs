@@ -27,8 +27,13 @@ impl<'a> Pages<'a> {
 
     /// The root of the first text.
     pub fn root(&'a self, subject: &str) -> Option<Element<'a>> {
-        let (_, document) = self.pages.first()?;
-        Some(Element::new(document.root_element(), self, 0, subject.to_string()))
+        self.root_of(0, subject)
+    }
+
+    /// The root of one of the texts.
+    pub fn root_of(&'a self, page: usize, subject: &str) -> Option<Element<'a>> {
+        let (_, document) = self.pages.get(page)?;
+        Some(Element::new(document.root_element(), self, page, subject.to_string()))
     }
 
     pub fn source(&self, page: usize) -> &'a Source {
