@@ -83,11 +83,12 @@ pub use urdf::expressible::expressible;
 pub use urdf::write::{NotUrdf, write};
 pub use written::{NotWritten, Written};
 
-use mozzi::{Description, Model};
+use mozzi::{Description, Model, SO3};
 use report::finding::Findings;
 use report::placed::Placed;
 use report::places::Places;
 use report::{problem, repair};
+use std::collections::BTreeMap;
 use std::path::Path;
 use text::context::Context;
 use text::dialect::Dialect;
@@ -107,6 +108,9 @@ pub struct Loaded {
     pub unused: Vec<Diagnostic>,
     /// The arguments that a file of xacro declares or reads, with their values, by name.
     pub xacro_arguments: Vec<(String, String)>,
+    /// The axes in which the file gives each link's inertia, in the link's axes, by link: the rotation of a URDF's
+    /// `<inertial><origin>`. None for links without an inertia of their own.
+    pub inertial_axes: BTreeMap<String, SO3>,
 }
 
 impl Loaded {
@@ -172,6 +176,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     let dialect = Dialect::of(&source.text);
     let source = syntax::mended(source, dialect, &mut findings);
     let (mut sources, mut description) = (vec![source], None);
+    let mut inertial_axes = BTreeMap::new();
     if !findings.has_errors() {
         let mut cx = Context::new(findings, dialect);
         let folder = folder_of(folder, file_name, &settings.xacro);
@@ -181,7 +186,11 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
             Dialect::Sdf => sdf::read(&mut sources, folder, &settings.xacro, &mut cx),
         };
         findings = cx.findings;
-        description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));
+        description = result.map(|(description, places)| {
+            let each = description.links.iter().zip(&places.links);
+            inertial_axes = each.filter_map(|(link, place)| Some((link.name.clone(), place.turned?))).collect();
+            finish(description, &places, policy, &mut findings)
+        });
     }
     let Placed { mut diagnostics, errors, is_cut } = Placed::of(findings, &sources, dialect);
     diagnostics.extend(notes);
@@ -197,7 +206,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
             let (unused, warnings) = diagnostics.into_iter().partition(is_unused);
             let expansion = sources[0].expansion.as_ref();
             let xacro_arguments = expansion.map_or_else(Vec::new, |expansion| expansion.arguments.clone());
-            Ok(Loaded { description, warnings, unused, xacro_arguments })
+            Ok(Loaded { description, warnings, unused, xacro_arguments, inertial_axes })
         }
         _ => {
             let strictly = |found| if is_refused(&found) { found.into_error() } else { found };

@@ -10,6 +10,8 @@ pub struct Written {
     /// What the text leaves out or says in other words, each with its element: "joint `a`: velocity limit 2". Empty if
     /// reading the text gives the same robot up to rounding.
     pub losses: Vec<String>,
+    /// What readers of the format may refuse.
+    pub remarks: Vec<String>,
 }
 
 /// The parts of a robot without which it would be another one, and which a format cannot express.

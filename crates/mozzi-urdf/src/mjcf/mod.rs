@@ -58,6 +58,7 @@ mod inertial;
 mod joint;
 mod keyframe;
 mod law;
+mod losses;
 mod option;
 mod orientation;
 mod rotor;
@@ -67,11 +68,13 @@ mod shapes;
 mod spring;
 mod tree;
 mod vocabulary;
+mod write;
 
 pub use actuated::Actuated;
 pub use actuator::{Actuation, Actuator, actuation, actuation_of};
 pub use explain::codes;
 pub(crate) use orientation::quaternion;
+pub use write::write;
 
 use crate::XacroArguments;
 use crate::geometry::Shape;

@@ -297,7 +297,9 @@ const CODES: [Entry; 74] = [
 fn entry(code: &str) -> Option<&'static Entry> {
     let look = |codes: &'static [Entry], short: &str| codes.iter().find(|(known, ..)| *known == short);
     let [of_sdf, of_mjcf, of_urdf] = ["sdf", "mjcf", "urdf"].map(|dialect| {
-        code.strip_prefix("mozzi::").and_then(|rest| rest.strip_prefix(dialect)).and_then(|rest| rest.strip_prefix("::"))
+        code.strip_prefix("mozzi::")
+            .and_then(|rest| rest.strip_prefix(dialect))
+            .and_then(|rest| rest.strip_prefix("::"))
     });
     let first = |short: &str, lists: &[&'static [Entry]]| lists.iter().find_map(|codes| look(codes, short));
     match (of_sdf, of_mjcf, of_urdf) {

@@ -78,7 +78,8 @@ impl Reader<'_> {
             carried[child] = true;
             let origin = parent.map_or(SE3::identity(), |parent| poses[parent]).inverse() * poses[child];
             let origin = self.written(parent, child).unwrap_or(origin);
-            let ends = [parent.map_or(WORLD.to_string(), |i| self.links[i].name.clone()), self.links[child].name.clone()];
+            let ends =
+                [parent.map_or(WORLD.to_string(), |i| self.links[i].name.clone()), self.links[child].name.clone()];
             if parent.is_none() {
                 to_world.push(description.joints.len());
             }
@@ -122,7 +123,9 @@ impl Reader<'_> {
                 let node = self.graph.found(&closure.scope, &body, "drake:ball_constraint", cx)?;
                 let (link, T) = (self.graph.link(node, cx).ok()?, self.graph.pose(node, cx));
                 Some(match link {
-                    Some(link) => Anchor::frame(&*self.links[link].name).at(poses[link].inverse() * T * SE3::translation(point.0)),
+                    Some(link) => {
+                        Anchor::frame(&*self.links[link].name).at(poses[link].inverse() * T * SE3::translation(point.0))
+                    }
                     None => Anchor::world(T * SE3::translation(point.0)),
                 })
             });
@@ -214,8 +217,9 @@ impl Reader<'_> {
             }
             Kind::TwoAxes | Kind::Planar(_) => {
                 let parts: Option<Vec<series::Part>> = match joint.kind {
-                    Kind::Planar(damping) => series::planar(Vec3([0.0, 0.0, 1.0]), damping)
-                        .map(|parts| parts.into_iter().map(|part| series::Part { screw: part.screw.moved(frame), ..part }).collect()),
+                    Kind::Planar(damping) => series::planar(Vec3([0.0, 0.0, 1.0]), damping).map(|parts| {
+                        parts.into_iter().map(|part| series::Part { screw: part.screw.moved(frame), ..part }).collect()
+                    }),
                     _ => (joint.axes.iter().zip(["axis", "axis2"]))
                         .map(|(axis, ending)| {
                             screw(axis, "revolute", self, cx).map(|screw| series::Part { ending, screw, damping: 0.0 })
@@ -234,7 +238,9 @@ impl Reader<'_> {
             // Drake's one damping for all directions; nothing else of an axis has a meaning
             added[0].damping = joint.axes.first().map_or(0.0, |axis| axis.damping);
         }
-        for (added, axis) in added.iter_mut().zip(&joint.axes).filter(|(added, _)| matches!(added.kind, JointKind::Screw(_))) {
+        for (added, axis) in
+            added.iter_mut().zip(&joint.axes).filter(|(added, _)| matches!(added.kind, JointKind::Screw(_)))
+        {
             added.limits = axis.limits;
             (added.damping, added.friction) = (axis.damping, axis.friction);
             (added.stiffness, added.spring_reference) = (axis.stiffness, axis.spring_reference);

@@ -122,8 +122,8 @@ fn limits(element: &Element, place: &mut Place, cx: &mut Context) -> Limits {
 /// θ = multiplier (θ_source − reference) + offset.
 fn coupling<'a>(element: &Element<'a>, place: &mut Place, cx: &mut Context) -> Option<Coupling<'a>> {
     let part = Part::new(element.clone(), &MIMIC, cx);
-    let [ratio, offset, reference] =
-        [("multiplier", 1.0), ("offset", 0.0), ("reference", 0.0)].map(|(name, default)| part.number(name, default, cx));
+    let [ratio, offset, reference] = [("multiplier", 1.0), ("offset", 0.0), ("reference", 0.0)]
+        .map(|(name, default)| part.number(name, default, cx));
     let joint = element.required_name("joint", cx)?;
     let axis = element.attribute("axis").map_or("axis", |value| value.text).to_string();
     place.set("mimic", joint.span.clone());

@@ -60,7 +60,8 @@ pub(crate) struct Graph<'a> {
 impl<'a> Graph<'a> {
     pub fn new() -> Self {
         let world = Rc::new(Scope { prefix: String::new(), frame: 0, model: 0 });
-        let mut graph = Graph { nodes: Vec::new(), names: HashMap::new(), known: Vec::new(), world: world.clone(), robot: None };
+        let mut graph =
+            Graph { nodes: Vec::new(), names: HashMap::new(), known: Vec::new(), world: world.clone(), robot: None };
         graph.add(Node::new(What::World, &world, "world".to_string()));
         graph
     }

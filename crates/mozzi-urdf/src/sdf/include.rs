@@ -71,7 +71,8 @@ pub(crate) fn gather(sources: &mut Vec<Source>, files: Files, cx: &mut Context) 
             let mut findings = Findings::default();
             let text = Source::new(&path.to_string_lossy(), bytes::read(&content, &mut findings)).at(base);
             if findings.has_errors() || Dialect::of(&text.text) != Dialect::Sdf {
-                cx.findings.add(error(format!("include: `{}` is not SDFormat, expected a file with <sdf>", shown(&uri))));
+                cx.findings
+                    .add(error(format!("include: `{}` is not SDFormat, expected a file with <sdf>", shown(&uri))));
                 continue;
             }
             let text = syntax::mended(text, Dialect::Sdf, &mut cx.findings);
@@ -95,7 +96,8 @@ fn includes_of(source: &Source) -> Result<Vec<(usize, Range<usize>, String)>, Fi
     }
     let document = syntax::parse(source, Dialect::Sdf)?;
     let is_include = |node: &roxmltree::Node| {
-        node.has_tag_name("include") && node.parent().is_some_and(|up| up.has_tag_name("model") || up.has_tag_name("world"))
+        node.has_tag_name("include")
+            && node.parent().is_some_and(|up| up.has_tag_name("model") || up.has_tag_name("world"))
     };
     let includes = document.descendants().filter(is_include).map(|node| {
         let start = node.range().start + 1;

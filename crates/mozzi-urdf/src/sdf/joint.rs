@@ -57,7 +57,8 @@ impl<'a> Reader<'a> {
         let element = element.called(subject.clone());
         let is_drake = element.written_name() == "drake:joint";
         let part = Part::new(element, if is_drake { &DRAKE_JOINT } else { &JOINT }, cx);
-        let of_drake = |name: &str| part.element.elements().find(|child| child.written_name() == format!("drake:{name}"));
+        let of_drake =
+            |name: &str| part.element.elements().find(|child| child.written_name() == format!("drake:{name}"));
         let (parent, child) = match is_drake {
             true => (drake_name(&part, "parent", cx), drake_name(&part, "child", cx)),
             false => (part.name_of("parent", cx), part.name_of("child", cx)),
@@ -97,12 +98,14 @@ impl<'a> Reader<'a> {
             value.and_then(|value| part.element.vector::<1>(&format!("drake:{name}"), &value, cx)).map(|[x]| x)
         });
         if of_drake("mimic").is_some() && axes.len() == 1 {
-            axes[0].mimic = axes[0].mimic.take().or_else(|| of_drake("mimic").and_then(|m| super::axis::of_drake(&m, cx)));
+            axes[0].mimic =
+                axes[0].mimic.take().or_else(|| of_drake("mimic").and_then(|m| super::axis::of_drake(&m, cx)));
         }
         self.plugins(&part.element, cx);
         let pose = Pose::of(&part, version, cx);
         let relative_to = pose.relative_to.or_else(|| child.clone());
-        let node = Node { T: pose.T, relative_to, carrier: child.clone(), ..Node::new(What::Joint, scope, subject.clone()) };
+        let node =
+            Node { T: pose.T, relative_to, carrier: child.clone(), ..Node::new(What::Joint, scope, subject.clone()) };
         let node = self.named(&name, node, &place, version, cx);
         let kind = kind.filter(|_| is_complete).unwrap_or(Kind::Fixed);
         let rotor = [rotor[0].unwrap_or(0.0), rotor[1].unwrap_or(1.0)];

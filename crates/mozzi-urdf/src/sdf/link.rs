@@ -61,7 +61,11 @@ impl<'a> Reader<'a> {
             }
         };
         let pose = Pose::of(&part, version, cx);
-        let node = Node { T: pose.T, relative_to: pose.relative_to, ..Node::new(What::Link(self.links.len()), scope, subject) };
+        let node = Node {
+            T: pose.T,
+            relative_to: pose.relative_to,
+            ..Node::new(What::Link(self.links.len()), scope, subject)
+        };
         let node = self.named(&name, node, &place, version, cx);
         self.first_link(scope.model, self.links.len());
         self.first_link(scope.frame, self.links.len());
@@ -86,7 +90,8 @@ impl<'a> Reader<'a> {
     pub fn named(&mut self, name: &str, node: Node<'a>, place: &Place, version: Version, cx: &mut Context) -> usize {
         let (subject, node) = (node.subject.clone(), self.graph.add(node));
         if !self.graph.name(name, node) && version >= Version::WITH_FRAMES {
-            let message = format!("{subject}: the name is used twice, expected one for each link, joint, frame and model");
+            let message =
+                format!("{subject}: the name is used twice, expected one for each link, joint, frame and model");
             cx.findings.add(Finding::error("duplicate_name", place.span("name"), message).help("rename one of them"));
         }
         node
@@ -124,7 +129,8 @@ fn read_inertial(element: &Element, version: Version, place: &mut Place, cx: &mu
     }
     let pose = Pose::of(&part, version, cx);
     if let Some(frame) = pose.relative_to.filter(|_| version >= Version::WITH_FRAMES) {
-        let message = format!("{}: pose: relative_to: is not allowed, since it is relative to the link", element.subject);
+        let message =
+            format!("{}: pose: relative_to: is not allowed, since it is relative to the link", element.subject);
         cx.findings.error("unsupported_attribute", frame.span, message);
     }
     if part.child("mass").is_none() && auto != Some(true) {
@@ -141,7 +147,8 @@ fn read_inertial(element: &Element, version: Version, place: &mut Place, cx: &mu
             let missing: Vec<&str> =
                 ["ixx", "iyy", "izz"].into_iter().filter(|name| moments.child(name).is_none()).collect();
             if !missing.is_empty() {
-                let message = format!("{}: has no <{}>: SDFormat gives it 1 kg m²", inertia.subject, missing.join(">, <"));
+                let message =
+                    format!("{}: has no <{}>: SDFormat gives it 1 kg m²", inertia.subject, missing.join(">, <"));
                 cx.findings.add(Finding::warning("default_inertia", inertia.span(), message));
             }
             let [xx, xy, xz, yy, yz, zz] =
@@ -156,5 +163,6 @@ fn read_inertial(element: &Element, version: Version, place: &mut Place, cx: &mu
         None => {}
     }
     let SE3 { R, p } = pose.T;
+    place.turned = Some(R);
     SpatialInertia::new(mass, p, I.congruence(R.matrix()))
 }

@@ -51,12 +51,16 @@ pub(super) fn of(d: &Description) -> Vec<String> {
     };
     let states: Vec<&str> = d.states.iter().map(|state| state.name.as_str()).filter(|name| !is_kept(name)).collect();
     losses.extend(names_of("the named states", &states));
+    losses
+}
+
+/// Links without mass.
+pub(super) fn refused_by_gazebo(d: &Description) -> Option<String> {
     let base = base_link(d).map(|link| link.name.as_str());
     let is_massless = |name: &str| !(has_world(d) && Some(name) == base);
     let empty: Vec<&str> = (d.links.iter())
         .filter(|link| link.inertia.mass == 0.0 && is_massless(&link.name))
         .map(|link| link.name.as_str())
         .collect();
-    losses.extend(names_of("nothing, but Gazebo refuses links without mass:", &empty));
-    losses
+    names_of("Gazebo refuses links without mass:", &empty)
 }

@@ -24,8 +24,8 @@ mod explain;
 mod graph;
 mod include;
 mod joint;
-mod losses;
 mod link;
+mod losses;
 mod model;
 mod names;
 mod part;
@@ -35,8 +35,8 @@ mod vocabulary;
 mod world;
 mod write;
 
-pub use explain::codes;
 pub(crate) use explain::CODES;
+pub use explain::codes;
 pub use write::write;
 
 use crate::XacroArguments;

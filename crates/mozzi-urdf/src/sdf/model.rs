@@ -58,7 +58,8 @@ impl<'a> Reader<'a> {
             .and_then(|over| over.part.value("placement_frame"))
             .or_else(|| part.element.attribute("placement_frame"))
             .filter(|value| !value.text.is_empty());
-        let node = Node { T: pose.T, relative_to: pose.relative_to, ..Node::new(What::Model(None), outer, subject.clone()) };
+        let node =
+            Node { T: pose.T, relative_to: pose.relative_to, ..Node::new(What::Model(None), outer, subject.clone()) };
         let node = match is_robot || is_merged {
             true => self.graph.add(node),
             false => self.named(&format!("{}{name}", outer.prefix), node, &place, Version::WITH_FRAMES, cx),

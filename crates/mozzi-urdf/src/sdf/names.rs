@@ -17,11 +17,13 @@ pub(super) struct Names {
 impl Names {
     /// The names, and a line for each kind of names that are changed.
     pub fn of(d: &Description) -> (Self, Vec<String>) {
-        let (mut taken, mut changed) = (BTreeSet::from(["world".to_string(), super::FIXED_BASE.to_string()]), Vec::new());
+        let (mut taken, mut changed) =
+            (BTreeSet::from(["world".to_string(), super::FIXED_BASE.to_string()]), Vec::new());
         let mut settle = |name: &str, ending: &str| {
             let plain = plain(name);
             // a name of SDFormat's own, or of something else, gets an ending
-            let written = if taken.contains(&plain) { free(&format!("{plain}{ending}"), |n| taken.contains(n)) } else { plain };
+            let written =
+                if taken.contains(&plain) { free(&format!("{plain}{ending}"), |n| taken.contains(n)) } else { plain };
             if written != name {
                 changed.push((name.to_string(), written.clone()));
             }
@@ -29,7 +31,8 @@ impl Names {
             (name.to_string(), safe(&written))
         };
         let is_world = |name: &str| has_world(d) && name == "world";
-        let links = d.links.iter().filter(|link| !is_world(&link.name)).map(|link| settle(&link.name, "_link")).collect();
+        let links =
+            d.links.iter().filter(|link| !is_world(&link.name)).map(|link| settle(&link.name, "_link")).collect();
         let frames = d.frames.iter().map(|frame| settle(&frame.name, "_frame")).collect();
         let joints = d.joints.iter().map(|joint| settle(&joint.name, "_joint")).collect();
         let model = if d.name.is_empty() { "robot".to_string() } else { plain(&d.name) };

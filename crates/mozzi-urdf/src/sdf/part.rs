@@ -10,9 +10,33 @@ use std::ops::Range;
 
 /// Elements without attributes and children.
 const LEAVES: [&str; 27] = [
-    "mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz", "gravity", "kinematic", "static", "uri", "name", "placement_frame",
-    "parent", "child", "lower", "upper", "effort", "velocity", "damping", "friction", "spring_reference",
-    "spring_stiffness", "multiplier", "offset", "reference", "initial_position",
+    "mass",
+    "ixx",
+    "ixy",
+    "ixz",
+    "iyy",
+    "iyz",
+    "izz",
+    "gravity",
+    "kinematic",
+    "static",
+    "uri",
+    "name",
+    "placement_frame",
+    "parent",
+    "child",
+    "lower",
+    "upper",
+    "effort",
+    "velocity",
+    "damping",
+    "friction",
+    "spring_reference",
+    "spring_stiffness",
+    "multiplier",
+    "offset",
+    "reference",
+    "initial_position",
 ];
 
 /// An element, and its children that may occur once.

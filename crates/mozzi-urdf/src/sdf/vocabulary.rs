@@ -67,10 +67,8 @@ pub(crate) const INERTIAL: Vocabulary = Vocabulary {
     silent: &["density", "auto_inertia_params"],
     ..NOTHING
 };
-pub(crate) const INERTIA: Vocabulary =
-    Vocabulary { once: &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], ..NOTHING };
-pub(crate) const FRAME: Vocabulary =
-    Vocabulary { attributes: &["name", "attached_to"], once: &["pose"], ..NOTHING };
+pub(crate) const INERTIA: Vocabulary = Vocabulary { once: &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], ..NOTHING };
+pub(crate) const FRAME: Vocabulary = Vocabulary { attributes: &["name", "attached_to"], once: &["pose"], ..NOTHING };
 pub(crate) const JOINT: Vocabulary = Vocabulary {
     attributes: &["name", "type"],
     once: &["pose", "parent", "child", "axis", "axis2", "thread_pitch", "screw_thread_pitch"],
@@ -85,11 +83,8 @@ pub(crate) const DYNAMICS: Vocabulary =
     Vocabulary { once: &["damping", "friction", "spring_reference", "spring_stiffness"], ..NOTHING };
 pub(crate) const LIMIT: Vocabulary =
     Vocabulary { once: &["lower", "upper", "effort", "velocity"], silent: &["stiffness", "dissipation"], ..NOTHING };
-pub(crate) const MIMIC: Vocabulary = Vocabulary {
-    attributes: &["joint", "axis"],
-    once: &["multiplier", "offset", "reference"],
-    ..NOTHING
-};
+pub(crate) const MIMIC: Vocabulary =
+    Vocabulary { attributes: &["joint", "axis"], once: &["multiplier", "offset", "reference"], ..NOTHING };
 /// An element that is a text alone.
 pub(crate) const POSE: Vocabulary =
     Vocabulary { attributes: &["relative_to", "rotation_format", "degrees", "frame"], ..NOTHING };

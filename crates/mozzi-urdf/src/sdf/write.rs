@@ -28,7 +28,8 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
     let mut text = String::new();
     // writing to a String cannot fail
     let _ = sdf(&mut text, description, &names);
-    Ok(Written { text, losses })
+    let remarks = super::losses::refused_by_gazebo(description).into_iter().collect();
+    Ok(Written { text, losses, remarks })
 }
 
 /// Is the base SDFormat's world: a link of this name without mass?
@@ -195,7 +196,11 @@ fn inside_axis(text: &mut String, joint: &Joint, names: &Names) -> fmt::Result {
     let limits = joint.limits;
     let bound = |x: f64| x.clamp(-1e16, 1e16);
     let [low, high] = limits.position.map_or([None; 2], |[low, high]| [Some(bound(low)), Some(bound(high))]);
-    element(text, "limit", &[("lower", low), ("upper", high), ("effort", limits.effort), ("velocity", limits.velocity)])?;
+    element(
+        text,
+        "limit",
+        &[("lower", low), ("upper", high), ("effort", limits.effort), ("velocity", limits.velocity)],
+    )?;
     let given = |x: f64| (x != 0.0).then_some(x);
     element(
         text,
@@ -210,7 +215,11 @@ fn inside_axis(text: &mut String, joint: &Joint, names: &Names) -> fmt::Result {
     let Some(mimic) = &joint.mimic else { return Ok(()) };
     writeln!(text, "        <mimic joint=\"{}\">", names.joint(&mimic.joint))?;
     writeln!(text, "          <multiplier>{:?}</multiplier>", mimic.ratio)?;
-    writeln!(text, "          <offset>{:?}</offset>\n          <reference>0</reference>\n        </mimic>", mimic.offset)
+    writeln!(
+        text,
+        "          <offset>{:?}</offset>\n          <reference>0</reference>\n        </mimic>",
+        mimic.offset
+    )
 }
 
 /// An element with the numbers that there are.

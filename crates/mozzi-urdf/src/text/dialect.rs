@@ -55,7 +55,8 @@ impl Dialect {
 
 /// Does this text begin with the word `sdf`, whole?
 fn is_sdf(text: &str) -> bool {
-    text.strip_prefix("sdf").is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_whitespace() || c == '>' || c == '/'))
+    text.strip_prefix("sdf")
+        .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_whitespace() || c == '>' || c == '/'))
 }
 
 #[cfg(test)]

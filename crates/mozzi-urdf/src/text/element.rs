@@ -69,7 +69,8 @@ impl<'a> Element<'a> {
 
     /// The text inside without white space around it, and its place; the name's place if there is none.
     pub fn content(&self) -> Value<'a> {
-        let text = self.node.children().find(|node| node.is_text() && !node.text().unwrap_or_default().trim().is_empty());
+        let text =
+            self.node.children().find(|node| node.is_text() && !node.text().unwrap_or_default().trim().is_empty());
         let Some(node) = text else { return Value { text: "", span: self.span() } };
         let raw = self.place(node.range());
         let written = self.raw(&raw);
