@@ -84,7 +84,7 @@ impl Reader<'_> {
                 to_world.push(description.joints.len());
             }
             let first = description.joints.len();
-            self.moved(joint, ends, origin, poses[child], &mut description, &mut places, cx);
+            self.moved(joint, ends, [origin, poses[child]], (&mut description, &mut places), cx);
             for (i, one) in joint.axes.iter().enumerate().take(description.joints.len() - first) {
                 let (added, word) = (&mut description.joints[first + i], ["axis", "axis2"][i.min(1)]);
                 renamed.insert((joint.name.clone(), word), added.name.clone());
@@ -178,10 +178,8 @@ impl Reader<'_> {
         &mut self,
         joint: &Joint,
         [parent, child]: [String; 2],
-        origin: SE3,
-        of_child: SE3,
-        description: &mut Description,
-        places: &mut Places,
+        [origin, of_child]: [SE3; 2],
+        (description, places): (&mut Description, &mut Places),
         cx: &mut Context,
     ) {
         let frame = of_child.inverse() * self.graph.pose(joint.node, cx); // the joint's, in the child's

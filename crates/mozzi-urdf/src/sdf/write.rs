@@ -90,15 +90,13 @@ fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
         };
         link(text, each, names, place)?;
     }
-    if d.base == Base::Fixed && !has_world(d) {
-        if let Some(base) = base_link(d) {
-            let child = names.link(&base.name);
-            writeln!(
-                text,
-                "    <joint name=\"{FIXED_BASE}\" type=\"fixed\">\n      <parent>world</parent>\n      \
-                 <child>{child}</child>\n    </joint>"
-            )?;
-        }
+    if let Some(base) = base_link(d).filter(|_| d.base == Base::Fixed && !has_world(d)) {
+        let child = names.link(&base.name);
+        writeln!(
+            text,
+            "    <joint name=\"{FIXED_BASE}\" type=\"fixed\">\n      <parent>world</parent>\n      \
+             <child>{child}</child>\n    </joint>"
+        )?;
     }
     for each in d.joints.iter().filter(|joint| joint.kind != JointKind::Free) {
         joint(text, each, names, is_world(&each.parent))?;
@@ -159,10 +157,11 @@ fn joint(text: &mut String, joint: &Joint, names: &Names, of_world: bool) -> fmt
     pose_element(text, "      ", SE3::translation(point.0), None)?;
     let parent = if of_world { "world" } else { names.link(&joint.parent) };
     writeln!(text, "      <parent>{parent}</parent>\n      <child>{}</child>", names.link(&joint.child))?;
-    if let JointKind::Screw(A) = joint.kind {
-        if kind == "screw" {
+    match joint.kind {
+        JointKind::Screw(A) if kind == "screw" => {
             writeln!(text, "      <screw_thread_pitch>{:?}</screw_thread_pitch>", travel(A))?;
         }
+        _ => {}
     }
     if let Some(xyz) = axis {
         writeln!(text, "      <axis>\n        <xyz>{}</xyz>", triple(xyz))?;

@@ -2,8 +2,8 @@
 //!
 //! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf reports`, rewrites it.
 
-use super::{Broken, folder, models, report, robots};
-use mozzi_urdf::{Severity, codes, explain, mjcf, remedy};
+use super::{Broken, folder, models, report, robots, sdf_models};
+use mozzi_urdf::{Severity, codes, explain, mjcf, remedy, sdf};
 use std::fmt::Write;
 use std::path::Path;
 
