@@ -9,8 +9,9 @@ use crate::{input, robot_json};
 use clap::Args;
 use mozzi::model::Problem;
 use mozzi::quantities::INPUTS;
-use mozzi::{Description, FrameId, Model};
+use mozzi::{Description, FrameId, Model, SO3};
 use mozzi_urdf::{Consequence, Diagnostic, LoadError, Loaded, Policy, Settings, Severity, constraints};
+use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
@@ -103,9 +104,14 @@ impl PolicyArguments {
 
     /// The robot of a file of any kind.
     pub fn model(&self, name_or_path: &str) -> Result<Model> {
+        self.model_and_axes(name_or_path).map(|(model, _)| model)
+    }
+
+    /// The same, and the axes in which the file gives inertias.
+    pub fn model_and_axes(&self, name_or_path: &str) -> Result<(Model, BTreeMap<String, SO3>)> {
         if !robot_json::is_json(name_or_path) {
-            let robot = self.load(name_or_path)?.description;
-            return Ok(self.constrained(name_or_path, robot)?.build()?);
+            let Loaded { description, inertial_axes, .. } = self.load(name_or_path)?;
+            return Ok((self.constrained(name_or_path, description)?.build()?, inertial_axes));
         }
         let robot = self.constrained(name_or_path, self.freed(robot_json::read(name_or_path)?))?;
         let (errors, warnings) = self.problems(&robot);
@@ -114,7 +120,7 @@ impl PolicyArguments {
         }
         let code = |problem: &Problem| mozzi_urdf::consequence(problem.code);
         print(name_or_path, &warnings, code, |problem| format!("{name_or_path}: warning: {problem}\n"));
-        Ok(robot.build()?)
+        Ok((robot.build()?, BTreeMap::new()))
     }
 
     /// Errors and warnings for a robot without source text. Nothing is repaired here: repairs were made, if requested,
@@ -139,7 +145,7 @@ fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence,
 /// A robot's file, and how it is read.
 #[derive(Args, Debug)]
 pub struct FileArguments {
-    /// A file (URDF, xacro, MJCF, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
+    /// A file (URDF, xacro, MJCF, SDFormat, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
     /// double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches

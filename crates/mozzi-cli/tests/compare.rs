@@ -134,3 +134,20 @@ fn a_base_that_is_freed_is_free_in_the_libraries() {
     let report = common::text(&["compare", "ur5", "--floating", "--python", &python, "--states", "3"]);
     assert!(report.contains("ur5: a floating base"), "{report}");
 }
+
+#[test]
+fn two_files_are_compared_without_python() {
+    let faults = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-report/tests/faults");
+    let path = |name: &str| format!("{faults}/{name}");
+    let (before, after) = (path("before.urdf"), path("02_not_rotated.urdf"));
+    let output = mozzi(&["compare", &before, &after]);
+    let report = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{report}");
+    assert!(report.contains("02_not_rotated.urdf's inertia of `upper` is not rotated"), "{report}");
+    assert!(report.contains("torque of `shoulder` differs by up to") && report.contains("N m"), "{report}");
+    assert_eq!(mozzi(&["compare", &before, &after, "--tolerance", "0.9"]).status.code(), Some(0));
+    assert_eq!(mozzi(&["compare", &before, &before]).status.code(), Some(0));
+    says(&["compare", &before, &after, "--tolerance", "2"], &["--tolerance is 2, expected a number from 0 to 1"]);
+    says(&["compare", &before, "nowhere.sdf"], &["`nowhere.sdf` is neither a file"]);
+    assert_eq!(complaint(&["compare", &before, "--tolerance", "1e-3"]).0, 2);
+}

@@ -43,7 +43,8 @@ fn python_and_what_cannot_be_converted() {
         let (code, message) = complaint(arguments);
         assert!(code == 1 && message.contains(words), "{message}");
     };
-    says(&["convert", "ur5", &path("ur5.xml")], "expected a name that ends in .urdf, .json or .py");
+    says(&["convert", "ur5", &path("ur5.txt")], "expected a name that ends in .urdf, .sdf, .xml (MJCF), .json or .py");
+    says(&["convert", "ur5", &path("ur5.usd")], "`urdf-usd-converter` (PyPI) makes it of a URDF");
     says(&["convert", "panda", &path("panda.py")], "serial chains");
     let robot = path("ur5.json");
     text(&["convert", "ur5", &robot]);
@@ -247,7 +248,39 @@ fn a_urdf_from_mjcf_is_complete() {
             .expect("a file")
             .replace("<worldbody>", "<option gravity=\"0 0 -1.62\"/><worldbody>"),
     );
-    let (code, message) = complaint(&["convert", &moon, &out]);
+    let (code, message) = complaint(&["convert", &moon, &out, "--strict"]);
     assert!(code == 1 && message.contains("gravity") && message.contains("--leave-out"), "{message}");
-    text(&["convert", &moon, &out, "--leave-out", "gravity"]);
+    text(&["convert", &moon, &out, "--strict", "--leave-out", "gravity"]);
+    let told = String::from_utf8(common::mozzi(&["convert", &moon, &out]).stderr).expect("text");
+    assert!(told.contains("omits gravity [0.0, 0.0, -1.62]"), "{told}");
+}
+
+#[test]
+fn through_sdf_and_mjcf_the_robot_stays() {
+    let folder = folder("formats");
+    let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
+    for (robot, told) in
+        [("ur5", "cannot express joint `shoulder_pan_joint`: velocity limit"), ("panda", "velocity limit")]
+    {
+        let (sdf, xml, back) = (path("r.sdf"), path("r.xml"), path("back.urdf"));
+        let said = |output: std::process::Output| String::from_utf8(output.stderr).expect("text");
+        let words = said(common::mozzi(&["convert", robot, &sdf]));
+        assert!(!words.contains("cannot express"), "{words}");
+        text(&["convert", &sdf, &back]);
+        for file in [&sdf, &back] {
+            assert!(text(&["compare", robot, file, "--tolerance", "1e-12"]).contains("the same robot"));
+        }
+        // MJCF has no limits of velocity
+        assert!(said(common::mozzi(&["convert", robot, &xml])).contains(told));
+        let (code, message) = complaint(&["convert", robot, &xml, "--strict"]);
+        assert!(code == 1 && message.contains("--strict, and it cannot express"), "{message}");
+        let report = common::mozzi(&["compare", robot, &xml, "--tolerance", "1e-12", "--json"]);
+        assert_eq!(report.status.code(), Some(1));
+        let report: serde_json::Value = serde_json::from_slice(&report.stdout).expect("JSON");
+        let causes = report["causes"].as_array().expect("a list");
+        assert!(!causes.is_empty() && causes.iter().all(|cause| cause["kind"] == "limits"), "{report}");
+        assert!(report["differences"]["inverse_dynamics"]["most"].as_f64().expect("a number") < 1e-12);
+    }
+    assert!(text(&["check", &path("r.sdf")]).contains("is valid"));
+    assert!(text(&["explain", "mozzi::sdf::default_inertia"]).contains("1 kg"));
 }

@@ -88,7 +88,7 @@ pub fn array<'py>(
 
 #[pymethods]
 impl PyModel {
-    /// The robot of any file (URDF, xacro, MJCF, JSON of `mozzi convert`), or an embedded robot by its name.
+    /// The robot of any file (URDF, xacro, MJCF, SDFormat, JSON of `mozzi convert`), or an embedded robot by its name.
     ///
     /// Parameters
     /// ----------

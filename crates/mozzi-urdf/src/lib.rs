@@ -1,5 +1,5 @@
-//! Reads robot descriptions in URDF, and in MuJoCo's MJCF (see [`mjcf`]): text in, [`Description`] out, and diagnostics
-//! that point at the place.
+//! Reads robot descriptions in URDF, MuJoCo's MJCF (see [`mjcf`]) and SDFormat (see [`sdf`]): text in, [`Description`]
+//! out, and diagnostics that point at the place.
 //!
 //! No silent guesses: whatever is wrong is an error, and all errors are reported together; suspicious content is a
 //! warning.
@@ -61,9 +61,11 @@ pub mod geometry;
 pub mod json;
 pub mod mjcf;
 mod report;
+pub mod sdf;
 mod settings;
 mod text;
 mod urdf;
+mod written;
 
 pub use edit::{EditError, EditedFile, drives_of_fixed_joints, edit, edit_files, edit_with_old_values};
 pub use mozzi::model::Severity;
@@ -80,12 +82,14 @@ pub use settings::{Policy, Settings};
 pub use text::expansion::{expanded, taken_from_host};
 pub use urdf::expressible::expressible;
 pub use urdf::write::{NotUrdf, write};
+pub use written::{NotWritten, Written};
 
-use mozzi::{Description, Model};
+use mozzi::{Description, Model, SO3};
 use report::finding::Findings;
 use report::placed::Placed;
 use report::places::Places;
 use report::{problem, repair};
+use std::collections::BTreeMap;
 use std::path::Path;
 use text::context::Context;
 use text::dialect::Dialect;
@@ -106,6 +110,9 @@ pub struct Loaded {
     pub unused: Vec<Diagnostic>,
     /// The arguments that a file of xacro declares or reads, with their values, by name.
     pub xacro_arguments: Vec<(String, String)>,
+    /// The axes in which the file gives each link's inertia, in the link's axes, by link: the rotation of a URDF's
+    /// `<inertial><origin>`. None for links without an inertia of their own.
+    pub inertial_axes: BTreeMap<String, SO3>,
 }
 
 impl Loaded {
@@ -171,15 +178,21 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     let dialect = Dialect::of(&source.text);
     let source = syntax::mended(source, dialect, &mut findings);
     let (mut sources, mut description) = (vec![source], None);
+    let mut inertial_axes = BTreeMap::new();
     if !findings.has_errors() {
         let mut cx = Context::new(findings, dialect);
         let folder = folder_of(folder, file_name, &settings.xacro);
         let result = match dialect {
             Dialect::Urdf => read_urdf(&sources[0], &mut cx),
             Dialect::Mjcf => mjcf::read(&mut sources, folder, &settings.xacro, &mut cx),
+            Dialect::Sdf => sdf::read(&mut sources, folder, &settings.xacro, &mut cx),
         };
         findings = cx.findings;
-        description = result.map(|(description, places)| finish(description, &places, policy, &mut findings));
+        description = result.map(|(description, places)| {
+            let each = description.links.iter().zip(&places.links);
+            inertial_axes = each.filter_map(|(link, place)| Some((link.name.clone(), place.turned?))).collect();
+            finish(description, &places, policy, &mut findings)
+        });
     }
     let Placed { mut diagnostics, errors, is_cut } = Placed::of(findings, &sources, dialect);
     diagnostics.extend(notes);
@@ -195,7 +208,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
             let (unused, warnings) = diagnostics.into_iter().partition(is_unused);
             let expansion = sources[0].expansion.as_ref();
             let xacro_arguments = expansion.map_or_else(Vec::new, |expansion| expansion.arguments.clone());
-            Ok(Loaded { description, warnings, unused, xacro_arguments })
+            Ok(Loaded { description, warnings, unused, xacro_arguments, inertial_axes })
         }
         _ => {
             let strictly = |found| if is_refused(&found) { found.into_error() } else { found };

@@ -11,6 +11,7 @@ mod edit_files;
 #[path = "common/files.rs"]
 mod files;
 mod floating;
+mod formats;
 mod freedoms;
 mod keyframes;
 mod meshes;
@@ -22,5 +23,6 @@ mod repairs;
 mod reports;
 mod robots;
 mod round_trip;
+mod sdf;
 mod transmissions;
 mod xacro;

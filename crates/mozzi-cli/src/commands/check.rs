@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 #[derive(Args, Debug)]
 pub struct CheckArguments {
-    /// Robots' files (URDF, xacro, MJCF, or JSON of `mozzi convert`), or the names of embedded robots
+    /// Robots' files (URDF, xacro, MJCF, SDFormat, or JSON of `mozzi convert`), or the names of embedded robots
     #[arg(value_name = "MODEL", required = true)]
     models: Vec<String>,
     /// Text with excerpts on standard error, or on standard output one JSON object per diagnostic and line,

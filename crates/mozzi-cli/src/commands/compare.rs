@@ -1,4 +1,5 @@
-//! `mozzi compare`: comparison with Pinocchio and MuJoCo on the same file, with explained differences.
+//! `mozzi compare`: comparison with Pinocchio and MuJoCo on the same file, or with another file of the robot, with
+//! explained differences.
 
 use super::info;
 use crate::failure::{Failure, Result};
@@ -8,15 +9,23 @@ use crate::robot::PolicyArguments;
 use crate::{input, robot_json};
 use clap::Args;
 use mozzi::Description;
+use mozzi_report::compare::files::{RobotFile, compare_files};
 use mozzi_report::compare::{Options, Source, ask, compare, find_python};
 use mozzi_urdf::expanded;
+use mozzi_urdf::geometry::geometry_with;
 use std::path::Path;
 use std::time::Duration;
 
 #[derive(Args, Debug)]
 pub struct CompareArguments {
-    /// A robot's file (URDF, xacro, MJCF, or JSON of `mozzi convert`), or the name of an embedded robot
+    /// A robot's file (URDF, xacro, MJCF, SDFormat, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
+    /// Another file of the robot, such as a converter's: the two files are compared, without a simulator. The exit code
+    /// is 0 only if moving joints, limits and couplings are the same and the forces agree to --tolerance
+    other: Option<String>,
+    /// With two files: the largest difference of M and of the forces, as a part of the largest number
+    #[arg(long, value_name = "X", default_value = "1e-9", requires = "other")]
+    tolerance: String,
     /// Python interpreter with pin or mujoco installed [default: that of the active virtual environment, else python3]
     #[arg(long, value_name = "PATH")]
     python: Option<String>,
@@ -37,6 +46,9 @@ pub struct CompareArguments {
 }
 
 pub fn run(arguments: &CompareArguments) -> Result<String> {
+    if let Some(other) = &arguments.other {
+        return two_files(arguments, other);
+    }
     let python = find_python(arguments.python.as_deref());
     let (states, seed) = (arguments.states.into(), arguments.seed);
     let options = Options { python, states, seed, time_limit: arguments.time_limit()? };
@@ -56,6 +68,33 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
     };
     let text = if arguments.json { json::print(&comparison.json()) } else { headline + &comparison.text() };
     if comparison.is_explained() { Ok(text) } else { Err(Failure::Answered(text)) }
+}
+
+/// Two files, which mozzi reads both.
+fn two_files(arguments: &CompareArguments, other: &str) -> Result<String> {
+    let tolerance = number("--tolerance", &arguments.tolerance)?;
+    if !(0.0..1.0).contains(&tolerance) {
+        return Err(Failure::wrong(format!("--tolerance is {tolerance}, expected a number from 0 to 1")));
+    }
+    // as short as the two differ
+    let short = |name: &str| Path::new(input::name(name)).file_name().map(|name| name.to_string_lossy().into_owned());
+    let is_short = short(&arguments.model) != short(other);
+    let file = |name: &str| -> Result<RobotFile> {
+        let (model, inertial_axes) = arguments.policy.model_and_axes(name)?;
+        // shapes only suggest reasons: a file without readable shapes has none
+        let shapes = match name {
+            "-" => Vec::new(),
+            name => {
+                geometry_with(name, &arguments.policy.settings().xacro).map_or_else(|_| Vec::new(), |all| all.shapes)
+            }
+        };
+        let shown = short(name).filter(|_| is_short).unwrap_or_else(|| input::name(name).to_string());
+        Ok(RobotFile { name: shown, model, inertial_axes, shapes })
+    };
+    let comparison =
+        compare_files(&file(&arguments.model)?, &file(other)?, arguments.states.into(), arguments.seed, tolerance)?;
+    let text = if arguments.json { json::print(&comparison.json()) } else { comparison.text() };
+    if comparison.agrees() { Ok(text) } else { Err(Failure::Answered(text)) }
 }
 
 impl CompareArguments {
@@ -92,6 +131,9 @@ fn source(arguments: &CompareArguments, robot: &Description) -> Result<Source> {
         return Ok(Source::written(input::name(name), robot)?);
     }
     let text = input::robot_text().map_err(|error| input::cannot(name, &error))?;
+    if mozzi_urdf::sdf::is_sdf(&String::from_utf8_lossy(text)) {
+        return Ok(Source::written(input::name(name), &mozzi_urdf::expressible(robot))?);
+    }
     let expansion = expanded(input::name(name), text, arguments.policy.settings())?;
     Ok(Source::of_text(input::name(name), &expansion.unwrap_or_else(|| String::from_utf8_lossy(text).into_owned())))
 }

@@ -1,5 +1,6 @@
 //! `mozzi convert`: the same robot in another file, or an edited one.
 
+pub mod tree;
 pub mod urdf;
 
 use super::screws;
@@ -15,18 +16,19 @@ use urdf::LeftOut;
 
 #[derive(Args, Debug)]
 pub struct ConvertArguments {
-    /// A robot's file (URDF, xacro, MJCF, or JSON that this command wrote), or the name of an embedded robot
+    /// A robot's file (URDF, xacro, MJCF, SDFormat, or JSON that this command wrote), or the name of an embedded robot
     #[arg(value_name = "IN")]
     input: String,
-    /// Output file; its ending chooses the format: .urdf, .json (links, joints, the book's lists), .py (lists for
-    /// NumPy). From URDF to URDF the text is kept, with its visuals, comments and unknown elements
+    /// Output file; its ending chooses the format: .urdf, .sdf, .xml (MJCF), .json (links, joints, the book's lists),
+    /// .py (lists for NumPy). From URDF to URDF the text is kept, with its visuals, comments and unknown elements. What
+    /// a format cannot express is told, a line for each; --strict refuses it
     #[arg(value_name = "OUT")]
     output: String,
     /// Allow OUT to be the file IN, which is overwritten
     #[arg(long)]
     in_place: bool,
-    /// Leave out of a URDF what it cannot express (gravity, rotors, constraints), or what other readers ignore
-    /// (armature, springs)
+    /// Leave out of a URDF what other readers ignore (armature, springs); with --strict, what it cannot express, too
+    /// (gravity, rotors, constraints)
     #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
     leave_out: Vec<LeftOut>,
     #[command(flatten)]
@@ -38,19 +40,27 @@ pub struct ConvertArguments {
 pub fn run(arguments: &ConvertArguments) -> Result<String> {
     let (input, output) = (&arguments.input, &arguments.output);
     let suffix = Path::new(output).extension().and_then(|suffix| suffix.to_str()).unwrap_or_default();
-    if !["urdf", "json", "py"].contains(&suffix) {
-        return Err(Failure::wrong(format!("OUT is `{output}`, expected a name that ends in .urdf, .json or .py")));
+    if ["usd", "usda", "usdc", "usdz"].contains(&suffix) {
+        return Err(Failure::wrong(format!(
+            "OUT is `{output}`, but USD is not written: `urdf-usd-converter` (PyPI) makes it of a URDF, \
+             `mujoco-usd-converter` of an MJCF file, and this command makes these"
+        )));
+    }
+    if !["urdf", "sdf", "xml", "json", "py"].contains(&suffix) {
+        let endings = ".urdf, .sdf, .xml (MJCF), .json or .py";
+        return Err(Failure::wrong(format!("OUT is `{output}`, expected a name that ends in {endings}")));
     }
     let model = arguments.edits.apply(arguments.policy.model(input)?)?;
     let text = match suffix {
         "urdf" => urdf::text(input, output, model.description(), &arguments.leave_out, arguments.policy.settings())?,
+        "sdf" | "xml" => tree::text(input, output, suffix, model.description(), &arguments.policy.settings())?,
         "json" => robot_json::write(&model),
         _ => screws::python(&model)?,
     };
     let to = if arguments.in_place { Output::replacing(output)? } else { Output::create(output)? };
     to.write(|to| to.write_all(text.as_bytes()))?;
     let states: Vec<&str> = model.state_names().collect();
-    if suffix != "json" && !states.is_empty() {
+    if ["urdf", "py"].contains(&suffix) && !states.is_empty() {
         failure::note(&format!(
             "{output} cannot express the robot's named states, which are omitted: {}",
             states.join(", ")

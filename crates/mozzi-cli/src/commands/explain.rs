@@ -3,12 +3,12 @@
 use crate::failure::{Failure, Result};
 use crate::text::{page_width, width};
 use clap::Args;
-use mozzi_urdf::{explain, mjcf, nearest_code, remedy};
+use mozzi_urdf::{explain, mjcf, nearest_code, remedy, sdf};
 use std::collections::BTreeSet;
 
 #[derive(Args, Debug)]
 pub struct ExplainArguments {
-    /// A diagnostic's code: mozzi::urdf::zero_axis, mozzi::mjcf::zero_axis, or zero_axis; without one, all codes
+    /// A diagnostic's code: mozzi::urdf::zero_axis, mozzi::mjcf::zero_axis, mozzi::sdf::zero_axis, or zero_axis; without one, all codes
     code: Option<String>,
 }
 
@@ -21,8 +21,12 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
     let short = asked.rsplit("::").next().unwrap_or(asked);
     match explain(asked) {
         Some(text) => {
-            let is_urdf = mozzi_urdf::codes().any(|code| code == short) && !asked.starts_with("mozzi::mjcf::");
-            let language = if is_urdf { "urdf" } else { "mjcf" };
+            let asked_for = ["mjcf", "sdf"].into_iter().find(|name| asked.starts_with(&format!("mozzi::{name}::")));
+            let language = asked_for.unwrap_or_else(|| match short {
+                _ if mozzi_urdf::codes().any(|code| code == short) => "urdf",
+                _ if mjcf::codes().any(|code| code == short) => "mjcf",
+                _ => "sdf",
+            });
             let remedy =
                 remedy(asked).map(|text| format!("\n{}", wrapped(&format!("Remedy: {text}.")))).unwrap_or_default();
             Ok(format!("mozzi::{language}::{short}\n\n{}{remedy}", wrapped(text)))
@@ -37,9 +41,9 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
     }
 }
 
-/// All codes, of either language.
+/// All codes, of any language.
 fn codes() -> impl Iterator<Item = &'static str> {
-    mozzi_urdf::codes().chain(mjcf::codes())
+    mozzi_urdf::codes().chain(mjcf::codes()).chain(sdf::codes())
 }
 
 /// Wraps lines to the page; existing line breaks stay.

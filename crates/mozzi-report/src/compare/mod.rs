@@ -21,6 +21,7 @@ mod comparison;
 mod constants;
 mod convention;
 mod error;
+pub mod files;
 mod numbers;
 mod python;
 mod question;

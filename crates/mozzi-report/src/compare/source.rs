@@ -19,8 +19,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// The file if the libraries can read it (URDF, MJCF); the text of an embedded robot; for JSON, `robot` written as
-    /// URDF.
+    /// The file if the libraries can read it (URDF, MJCF); the text of an embedded robot; for SDFormat and JSON,
+    /// `robot` written as URDF.
     ///
     /// # Errors
     /// [`Error::Read`], [`Error::Write`].
@@ -34,7 +34,11 @@ impl Source {
             return Self::written(name_or_path, robot);
         }
         let bytes = std::fs::read(path).map_err(|error| Error::Read { file: name_or_path.to_string(), error })?;
-        Ok(source(language(&String::from_utf8_lossy(&bytes)), Some(name_or_path.to_string()), None))
+        let text = String::from_utf8_lossy(&bytes);
+        if mozzi_urdf::sdf::is_sdf(&text) {
+            return Self::written(name_or_path, &mozzi_urdf::expressible(robot)); // they do not read it
+        }
+        Ok(source(language(&text), Some(name_or_path.to_string()), None))
     }
 
     /// A text of URDF or MJCF, such as that of a pipe.

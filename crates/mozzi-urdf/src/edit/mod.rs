@@ -73,6 +73,9 @@ pub fn edit_files(
     if crate::mjcf::is_mjcf(text) {
         return mjcf::edit(file_name, text, edited, keeps_old);
     }
+    if crate::sdf::is_sdf(text) {
+        return Err(refused(vec!["edits of SDFormat in place: convert it to .urdf or .json first".to_string()]));
+    }
     let new = edited_text(file_name, text, edited, keeps_old)?;
     Ok(if new == text { Vec::new() } else { vec![EditedFile { name: file_name.to_string(), text: new }] })
 }

@@ -50,6 +50,7 @@ impl Model<'_> {
             Sym3 { xx, xy, xz, yy, yz, zz }
         } else {
             let [x, y, z] = item.vector::<3>("diaginertia", cx).unwrap_or([0.0; 3]);
+            place.turned = Some(T.R);
             Sym3::diagonal(x, y, z).congruence(T.R.matrix())
         };
         SpatialInertia::new(mass, T.p, I)

@@ -62,6 +62,7 @@ mod inertial;
 mod joint;
 mod keyframe;
 mod law;
+mod losses;
 mod mesh;
 mod option;
 mod orientation;
@@ -74,11 +75,13 @@ mod shell;
 mod spring;
 mod tree;
 mod vocabulary;
+mod write;
 
 pub use actuated::Actuated;
 pub use actuator::{Actuation, Actuator, actuation, actuation_of};
 pub use explain::codes;
 pub(crate) use orientation::quaternion;
+pub use write::write;
 
 use crate::XacroArguments;
 use crate::geometry::Geometry;

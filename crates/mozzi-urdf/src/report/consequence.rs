@@ -18,8 +18,9 @@ pub enum Consequence {
     Unused,
 }
 
-const MOTION: [&str; 6] = [
+const MOTION: [&str; 7] = [
     "ignored_force",
+    "ignored_plugin",
     "ignored_property",
     "ignored_quaternion",
     "repaired_inertia",
@@ -87,11 +88,11 @@ fn of_topic(topic: Topic, [attributes, elements]: [usize; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Policy, codes, mjcf, parse, parse_with};
+    use crate::{Policy, codes, mjcf, parse, parse_with, sdf};
 
     #[test]
     fn every_code_is_known() {
-        let known: Vec<&str> = codes().chain(mjcf::codes()).collect();
+        let known: Vec<&str> = codes().chain(mjcf::codes()).chain(sdf::codes()).collect();
         assert!(MOTION.iter().chain(&REMARKS).all(|code| known.contains(code)));
         assert_eq!(consequence("mozzi::urdf::degrees"), Consequence::Numbers);
     }

@@ -2,8 +2,9 @@
 
 use crate::mjcf::explain as mjcf;
 use crate::report::spelling::nearest;
+use crate::sdf;
 
-/// A code, without `mozzi::urdf::` or `mozzi::mjcf::`; its meaning; its remedy.
+/// A code, without `mozzi::urdf::`, `mozzi::mjcf::` or `mozzi::sdf::`; its meaning; its remedy.
 pub(crate) type Entry = (&'static str, &'static str, &'static str);
 
 #[rustfmt::skip] // code, meaning, remedy
@@ -267,8 +268,8 @@ const CODES: [Entry; 74] = [
         "A vector has too few or too many numbers.",
         "separate numbers by spaces: `0 0 0.5`"),
     ("wrong_root",
-        "The root element of a URDF must be <robot>, that of MJCF <mujoco>; or the file is of another format, such as USD, \
-         SDF or JSON.",
+        "The root element of a URDF must be <robot>, that of MJCF <mujoco>; that of SDFormat <sdf>; or the file is of another format, such as USD \
+         or JSON.",
         "check that this is the right file; a URDF begins with <robot name=\"…\">"),
     ("xacro",
         "A xacro file cannot be expanded: a name is not defined, a macro is called with other parameters than it has, an \
@@ -291,14 +292,21 @@ const CODES: [Entry; 74] = [
         "write the joint's limits; a joint that turns freely is of type `continuous`, one that does not move `fixed`"),
 ];
 
-/// A code of one language, or of either (URDF's if it is in both). MJCF shares the URDF codes that have the same
-/// meaning.
+/// A code of one language, or of any (URDF's if it is in several). The others share the URDF codes that have the same
+/// meaning, SDFormat also MJCF's.
 fn entry(code: &str) -> Option<&'static Entry> {
     let look = |codes: &'static [Entry], short: &str| codes.iter().find(|(known, ..)| *known == short);
-    match (code.strip_prefix("mozzi::mjcf::"), code.strip_prefix("mozzi::urdf::")) {
-        (Some(short), _) => look(&mjcf::CODES, short).or_else(|| look(&CODES, short)),
-        (_, Some(short)) => look(&CODES, short),
-        _ => look(&CODES, code).or_else(|| look(&mjcf::CODES, code)),
+    let [of_sdf, of_mjcf, of_urdf] = ["sdf", "mjcf", "urdf"].map(|dialect| {
+        code.strip_prefix("mozzi::")
+            .and_then(|rest| rest.strip_prefix(dialect))
+            .and_then(|rest| rest.strip_prefix("::"))
+    });
+    let first = |short: &str, lists: &[&'static [Entry]]| lists.iter().find_map(|codes| look(codes, short));
+    match (of_sdf, of_mjcf, of_urdf) {
+        (Some(short), ..) => first(short, &[&sdf::CODES, &CODES, &mjcf::CODES]),
+        (_, Some(short), _) => first(short, &[&mjcf::CODES, &CODES]),
+        (.., Some(short)) => first(short, &[&CODES]),
+        _ => first(code, &[&CODES, &mjcf::CODES, &sdf::CODES]),
     }
 }
 
@@ -312,18 +320,18 @@ pub fn remedy(code: &str) -> Option<&'static str> {
     entry(code).map(|&(.., remedy)| remedy)
 }
 
-/// The code of either language that is most similar to an unknown one.
+/// The code of any language that is most similar to an unknown one.
 ///
 /// ```
 /// assert_eq!(mozzi_urdf::nearest_code("mozzi::urdf::zero-axes"), Some("zero_axis"));
 /// ```
 pub fn nearest_code(code: &str) -> Option<&'static str> {
     let short = code.rsplit("::").next().unwrap_or(code).replace('-', "_");
-    nearest(&short, codes().chain(mjcf::codes()))
+    nearest(&short, codes().chain(mjcf::codes()).chain(sdf::codes()))
 }
 
 /// All codes of URDF, without `mozzi::urdf::`, in alphabetical order; those of MJCF are
-/// [`mjcf::codes`](crate::mjcf::codes).
+/// [`mjcf::codes`](crate::mjcf::codes), those of SDFormat [`sdf::codes`](crate::sdf::codes).
 pub fn codes() -> impl Iterator<Item = &'static str> {
     let mut codes: Vec<&str> = CODES.iter().map(|&(code, ..)| code).collect();
     codes.sort_unstable();

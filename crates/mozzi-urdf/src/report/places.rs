@@ -1,6 +1,7 @@
 //! The place in the text of each element of a description, so that later diagnostics can point at it.
 
 use crate::text::element::Value;
+use mozzi::SO3;
 use mozzi::model::Element;
 use std::ops::Range;
 
@@ -11,6 +12,8 @@ pub(crate) struct Place {
     attributes: Vec<(&'static str, Range<usize>)>,
     /// Attributes that were already reported: findings of the checks about them would be duplicates.
     reported: Vec<&'static str>,
+    /// The axes in which the file gives a link's inertia, in the link's.
+    pub turned: Option<SO3>,
 }
 
 impl Place {

@@ -1,4 +1,4 @@
-//! The two languages that robots are read in.
+//! The languages that robots are read in.
 
 /// The language of a text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -6,6 +6,7 @@ pub(crate) enum Dialect {
     #[default]
     Urdf,
     Mjcf,
+    Sdf,
 }
 
 impl Dialect {
@@ -17,6 +18,7 @@ impl Dialect {
                 _ if after.starts_with("!--") => "-->",
                 _ if after.starts_with(['?', '!']) => ">",
                 _ if after.starts_with("mujoco") => return Dialect::Mjcf,
+                _ if is_sdf(after) => return Dialect::Sdf,
                 _ => return Dialect::Urdf,
             };
             rest = after.split_once(end).map_or("", |(_, rest)| rest);
@@ -28,6 +30,7 @@ impl Dialect {
         match self {
             Dialect::Urdf => "URDF",
             Dialect::Mjcf => "MJCF",
+            Dialect::Sdf => "SDFormat",
         }
     }
 
@@ -36,6 +39,7 @@ impl Dialect {
         match self {
             Dialect::Urdf => "robot",
             Dialect::Mjcf => "mujoco",
+            Dialect::Sdf => "sdf",
         }
     }
 
@@ -44,8 +48,15 @@ impl Dialect {
         match self {
             Dialect::Urdf => "mozzi::urdf::",
             Dialect::Mjcf => "mozzi::mjcf::",
+            Dialect::Sdf => "mozzi::sdf::",
         }
     }
+}
+
+/// Does this text begin with the word `sdf`, whole?
+fn is_sdf(text: &str) -> bool {
+    text.strip_prefix("sdf")
+        .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_whitespace() || c == '>' || c == '/'))
 }
 
 #[cfg(test)]
@@ -57,6 +68,8 @@ mod tests {
         for (text, dialect) in [
             ("<?xml version='1.0'?>\n<!-- <robot> -->\n<mujoco model='a'>", Dialect::Mjcf),
             ("<mujocoinclude>", Dialect::Mjcf),
+            ("<?xml version='1.0'?><sdf version='1.9'>", Dialect::Sdf),
+            ("<sdformat>", Dialect::Urdf),
             ("<robot><mujoco/></robot>", Dialect::Urdf),
             ("<!-- <mujoco>", Dialect::Urdf),
             ("", Dialect::Urdf),

@@ -36,7 +36,12 @@ pub(crate) type Children<'a> = BTreeMap<&'static str, Element<'a>>;
 impl<'a> Element<'a> {
     /// The root of the first text.
     pub fn root(pages: &'a Pages<'a>, subject: &str) -> Option<Self> {
-        Some(Element { node: pages.root()?, pages, page: 0, subject: subject.to_string() })
+        Element::root_of(pages, 0, subject)
+    }
+
+    /// The root of one of the texts.
+    pub fn root_of(pages: &'a Pages<'a>, page: usize, subject: &str) -> Option<Self> {
+        Some(Element { node: pages.root_of(page)?, pages, page, subject: subject.to_string() })
     }
 
     /// The same element with another name in messages.
@@ -66,6 +71,17 @@ impl<'a> Element<'a> {
     /// The text inside, up to the first child.
     pub fn text(&self) -> &'a str {
         self.node.text().unwrap_or_default()
+    }
+
+    /// The text inside without white space around it, and its place; the name's place if there is none.
+    pub fn content(&self) -> Value<'a> {
+        let text =
+            self.node.children().find(|node| node.is_text() && !node.text().unwrap_or_default().trim().is_empty());
+        let Some(node) = text else { return Value { text: "", span: self.span() } };
+        let raw = self.place(node.range());
+        let written = self.raw(&raw);
+        let start = raw.start + written.len() - written.trim_start().len();
+        Value { text: node.text().unwrap_or_default().trim(), span: start..start + written.trim().len() }
     }
 
     /// The place of the name in the start tag.

@@ -24,9 +24,9 @@ impl<'a> Pages<'a> {
         Pages { pages, includes }
     }
 
-    /// The root of the first text.
-    pub fn root(&'a self) -> Option<Node<'a, 'a>> {
-        Some(self.pages.first()?.1.root_element())
+    /// The root of one of the texts.
+    pub fn root_of(&'a self, page: usize) -> Option<Node<'a, 'a>> {
+        Some(self.pages.get(page)?.1.root_element())
     }
 
     pub fn source(&self, page: usize) -> &'a Source {

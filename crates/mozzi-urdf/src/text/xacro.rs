@@ -109,6 +109,7 @@ fn expanded(file: &str, dialect: Dialect) -> String {
     let ending = match dialect {
         Dialect::Urdf => ".urdf",
         Dialect::Mjcf => ".xml",
+        Dialect::Sdf => ".sdf",
     };
     match (file.strip_suffix(".xacro"), file.strip_suffix(ending)) {
         (Some(stem), _) => format!("{}{ending}", stem.strip_suffix(ending).unwrap_or(stem)),

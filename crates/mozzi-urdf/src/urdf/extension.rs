@@ -3,6 +3,7 @@
 
 use crate::report::finding::Finding;
 use crate::text::context::{Context, Unknown};
+use crate::text::dialect::Dialect;
 use crate::text::element::Element;
 use crate::urdf::vocabulary::shown;
 
@@ -15,6 +16,9 @@ const DRAKE: [&str; 6] = [
     "drake:gear_ratio",
     "drake:collision_filter_group",
 ];
+
+/// The same, in SDFormat alone.
+const DRAKE_IN_SDF: [&str; 4] = ["drake:parent", "drake:child", "drake:damping", "drake:mimic"];
 
 /// Elements of Drake that act on the robot, and their effect.
 const FORCES: [(&str, &str); 4] = [
@@ -31,7 +35,8 @@ const HARMLESS: [&str; 5] = ["xml", "xsi", "sensor", "controller", "interface"];
 /// Reports an element with a prefix, unless it is read elsewhere or does not matter.
 pub(crate) fn element(child: &Element, parent: &Element, cx: &mut Context) {
     let written = child.written_name();
-    if DRAKE.contains(&written) || is_harmless(written) {
+    let of_sdf = cx.dialect == Dialect::Sdf && DRAKE_IN_SDF.contains(&written);
+    if DRAKE.contains(&written) || of_sdf || is_harmless(written) {
         return;
     }
     if let Some((_, what)) = FORCES.iter().find(|(known, _)| *known == written) {

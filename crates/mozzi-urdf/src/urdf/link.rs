@@ -50,7 +50,10 @@ fn read_inertial(inertial: &Element, place: &mut Place, cx: &mut Context) -> Opt
     let mass = mass.and_then(|mass| read_mass(mass, place, cx));
     let inertia = inertia.and_then(|inertia| read_inertia(inertia, place, cx));
     match (T, mass, inertia) {
-        (Some(T), Some(mass), Some(I)) => Some(SpatialInertia::new(mass, T.p, I.congruence(T.R.matrix()))),
+        (Some(T), Some(mass), Some(I)) => {
+            place.turned = Some(T.R);
+            Some(SpatialInertia::new(mass, T.p, I.congruence(T.R.matrix())))
+        }
         // a negative mass is an error whatever else is invalid: the checks report it for a point mass
         (_, Some(mass), _) if mass < 0.0 => {
             place.report("inertia");

@@ -51,18 +51,24 @@ fn quaternion(origin: &Element, cx: &mut Context) -> Option<Option<SO3>> {
         return None;
     }
     let [x, y, z, w] = origin.vector::<4>("quat_xyzw", &value, cx)?;
-    let length = Vec3([Vec3([x, y, z]).norm(), w, 0.0]).norm();
-    if !(length > 1e-100 && length < 1e100) {
+    let Some((R, length)) = rotation([x, y, z, w]) else {
         let message = format!("{subject}: quat_xyzw: is `{}`, expected a unit quaternion", shown(value.text.trim()));
         cx.findings.add(Finding::error("zero_axis", value.span, message));
         return None;
-    }
+    };
     if (length - 1.0).abs() > SLACK {
         let text = shown(value.text.trim());
         let message = format!("{subject}: quat_xyzw: `{text}` has the length {length}, expected 1");
         cx.findings.add(Finding::warning("non_unit_quaternion", value.span, message));
     }
-    Some(Some(SO3::from_quaternion(w / length, Vec3([x, y, z]) * (1.0 / length))))
+    Some(Some(R))
+}
+
+/// The rotation of a quaternion, and the quaternion's length; None if it has no direction.
+pub(crate) fn rotation([x, y, z, w]: [f64; 4]) -> Option<(SO3, f64)> {
+    let length = Vec3([Vec3([x, y, z]).norm(), w, 0.0]).norm();
+    let is_direction = length > 1e-100 && length < 1e100;
+    is_direction.then(|| (SO3::from_quaternion(w / length, Vec3([x, y, z]) * (1.0 / length)), length))
 }
 
 #[cfg(test)]

@@ -86,10 +86,6 @@ pub(crate) fn read(root: &Element, cx: &mut Context) -> Option<(Description, Pla
 fn wrong_root(root: &Element) -> Finding {
     let message = format!("the root element is <{}>, expected <robot>", shown(root.written_name()));
     let help = match root.name() {
-        "sdf" => Some(
-            "the file is SDF (Gazebo), which is not read: use the URDF that it was made from, or export one"
-                .to_string(),
-        ),
         "COLLADA" => Some("the file is a mesh, not a robot".to_string()),
         other => did_you_mean(other, ["robot"]),
     };

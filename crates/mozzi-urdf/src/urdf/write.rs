@@ -138,7 +138,11 @@ fn robot(text: &mut String, d: &Description) -> fmt::Result {
 }
 
 /// The links and points of a constraint that Drake's element describes exactly, its name included.
-fn ball_constraint<'d>(d: &Description, i: usize, constraint: &'d Constraint) -> Option<[(&'d str, Vec3); 2]> {
+pub(crate) fn ball_constraint<'d>(
+    d: &Description,
+    i: usize,
+    constraint: &'d Constraint,
+) -> Option<[(&'d str, Vec3); 2]> {
     let ConstraintKind::Frames { a, b, closure: Closure::Point } = &constraint.kind else { return None };
     let end = |anchor: &'d Anchor| {
         let name = anchor.frame.as_deref()?;

@@ -1,12 +1,12 @@
-//! Every diagnostic code of both languages, reached by a broken file, with the exact report that its author reads.
+//! Every diagnostic code of all languages, reached by a broken file, with the exact report that its author reads.
 //!
 //! `tests/broken/CODE.urdf` and `CODE-variant.urdf` are robots with one error, `CODE.txt` next to them is the report;
-//! likewise the models in `tests/broken/mjcf`. A code without a file fails the test. `MOZZI_BLESS=1 cargo test -p
+//! likewise the models in `tests/broken/mjcf` and `tests/broken/sdf`. A code without a file fails the test. `MOZZI_BLESS=1 cargo test -p
 //! mozzi-urdf reports` rewrites the reports: read them before you commit them.
 
 mod page;
 
-use mozzi_urdf::{LoadError, Loaded, Policy, Style, codes, explain, load_with, mjcf, parse_with};
+use mozzi_urdf::{LoadError, Loaded, Policy, Style, codes, explain, load_with, mjcf, parse_with, sdf};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -81,6 +81,14 @@ fn models() -> Vec<Broken> {
     all
 }
 
+/// The models of Gazebo and Drake.
+fn sdf_models() -> Vec<Broken> {
+    let read = |path: PathBuf| Broken { name: name(&path), text: Vec::new(), path: Some(path) };
+    let mut all: Vec<Broken> = files(&folder().join("sdf"), "sdf").map(read).collect();
+    all.sort_by(|a, b| a.name.cmp(&b.name));
+    all
+}
+
 /// The report for its author, and the codes in it.
 fn report(broken: &Broken) -> (String, BTreeSet<String>) {
     let (text, diagnostics) = match broken.load() {
@@ -91,7 +99,9 @@ fn report(broken: &Broken) -> (String, BTreeSet<String>) {
         Err(error) => (error.pretty(Style::Ascii) + "\n", error.diagnostics().to_vec()),
     };
     // the folder differs on each machine
-    let text = text.replace(&*format!("{}/", folder().join("mjcf").to_string_lossy()), "");
+    let text = ["mjcf", "sdf"].iter().fold(text, |text: String, language| {
+        text.replace(&*format!("{}/", folder().join(language).to_string_lossy()), "")
+    });
     let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
     (lines.join("\n") + "\n", diagnostics.iter().map(|diagnostic| diagnostic.code().to_string()).collect())
 }
@@ -144,4 +154,15 @@ fn every_code_of_mjcf_is_reached_and_its_report_is_as_it_was_read() {
         reached.iter().filter(|&code| !known.contains(code) && !shared.contains(code)).collect();
     assert!(unknown.is_empty(), "{unknown:?}");
     assert!(reached.iter().all(|code| explain(&format!("mozzi::mjcf::{code}")).is_some()));
+}
+
+#[test]
+fn every_code_of_sdf_is_reached_and_its_report_is_as_it_was_read() {
+    let reached = compare("sdf", &folder().join("sdf"), sdf_models());
+    let known: BTreeSet<String> = sdf::codes().map(str::to_string).collect();
+    let missing: Vec<&String> = known.difference(&reached).collect();
+    assert!(missing.is_empty(), "codes that tests/broken/sdf does not reach: {missing:?}");
+    assert!(reached.iter().all(|code| explain(&format!("mozzi::sdf::{code}")).is_some()));
+    let sorted: Vec<&str> = sdf::codes().collect();
+    assert!(sorted.is_sorted());
 }

@@ -2,8 +2,8 @@
 //!
 //! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf reports`, rewrites it.
 
-use super::{Broken, folder, models, report, robots};
-use mozzi_urdf::{Severity, codes, explain, mjcf, remedy};
+use super::{Broken, folder, models, report, robots, sdf_models};
+use mozzi_urdf::{Severity, codes, explain, mjcf, remedy, sdf};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -101,6 +101,18 @@ fn page() -> String {
         shared.join(", ")
     );
     own.iter().for_each(|code| entry(&mut page, &models, "mjcf", code));
+    let sdf_models = sdf_models();
+    let own: Vec<&str> = sdf::codes().collect();
+    let shared: Vec<String> = codes()
+        .filter(|code| !own.contains(code) && example(&sdf_models, code).is_some())
+        .map(|code| format!("`{code}`"))
+        .collect();
+    let _ = writeln!(
+        page,
+        "\n## SDFormat\n\nThese mean what they mean in URDF, and begin with `mozzi::sdf::`: {}.",
+        shared.join(", ")
+    );
+    own.iter().for_each(|code| entry(&mut page, &sdf_models, "sdf", code));
     page
 }
 

@@ -6,7 +6,9 @@ use crate::robot_json;
 use clap::ValueEnum;
 use mozzi::Description;
 use mozzi::model::description::Joint;
-use mozzi_urdf::{Settings, drives_of_fixed_joints, edit, edit_with_old_values, embedded, expanded, expressible, mjcf};
+use mozzi_urdf::{
+    Settings, drives_of_fixed_joints, edit, edit_with_old_values, embedded, expanded, expressible, mjcf, sdf,
+};
 use std::path::Path;
 
 /// What a URDF is written without.
@@ -28,7 +30,7 @@ pub fn text(
 ) -> Result<String> {
     let not_written =
         |why: &dyn std::fmt::Display, help: &str| Failure::wrong(format!("{output} is not written: {why}; {help}"));
-    match source(input, settings)? {
+    match source(input, settings.clone())? {
         Some(text) if left_out.is_empty() => {
             relative_meshes(input, output, &text);
             let text = edit(input.strip_suffix(".xacro").unwrap_or(input), &text, robot)
@@ -39,9 +41,20 @@ pub fn text(
             Ok(text)
         }
         _ => {
-            let robot = reduced(output, robot, left_out);
+            let is_strict = settings.policy == mozzi_urdf::Policy::Strict;
+            // what URDF cannot express is told; strictly it is refused, unless the user names it
+            let all = [LeftOut::Gravity, LeftOut::Rotors, LeftOut::Constraints];
+            let told = all.into_iter().filter(|what| !is_strict && !left_out.contains(what));
+            let left_out: Vec<LeftOut> = left_out.iter().copied().chain(told).collect();
+            if is_strict && !robot.states.is_empty() {
+                let names: Vec<&str> = robot.states.iter().map(|state| state.name.as_str()).collect();
+                let why = format!("--strict, and URDF cannot express the named states {}", names.join(", "));
+                return Err(not_written(&why, ".json can express all of it"));
+            }
+            let robot = reduced(output, robot, &left_out);
             let text = mozzi_urdf::write(&robot).map_err(|why| not_written(&why, HELP))?;
             ignored_elsewhere(output, &robot);
+            shapes(input, output, &settings)?;
             Ok(text)
         }
     }
@@ -59,10 +72,30 @@ pub fn edited(input: &str, output: &str, robot: &Description, keeps_old: bool, s
     }
 }
 
-const HELP: &str = ".json can express all of it, --leave-out drops gravity, rotors and constraints";
+const HELP: &str = ".json can express all of it; without --strict, or with --leave-out, gravity, rotors and constraints are \
+                    left out";
+
+/// A note about the shapes of IN, which are not written.
+pub fn shapes(input: &str, output: &str, settings: &Settings) -> Result<()> {
+    let Some(text) = any_source(input, settings.clone())? else { return Ok(()) };
+    let count: usize = ["<visual", "<collision", "<geom "].iter().map(|tag| text.matches(tag).count()).sum();
+    if count > 0 {
+        failure::note(&format!(
+            "{output} omits the {count} shapes of {}, for pictures and contacts",
+            input::name(input)
+        ));
+    }
+    Ok(())
+}
 
 /// The text of a URDF, or the expansion of a xacro file.
 fn source(input: &str, settings: Settings) -> Result<Option<String>> {
+    let text = any_source(input, settings)?;
+    Ok(text.filter(|text| !mjcf::is_mjcf(text) && !sdf::is_sdf(text)))
+}
+
+/// The text of any file but JSON.
+fn any_source(input: &str, settings: Settings) -> Result<Option<String>> {
     if let Some(text) = embedded::text(input) {
         return Ok(Some(text.to_string()));
     }
@@ -71,7 +104,7 @@ fn source(input: &str, settings: Settings) -> Result<Option<String>> {
     }
     let text = input::robot_file(input)?;
     let text = expanded(input::name(input), &text, settings)?.unwrap_or(text);
-    Ok(Some(text).filter(|text| !mjcf::is_mjcf(text)))
+    Ok(Some(text))
 }
 
 /// Notes visuals whose files are named relative to the text's folder.

@@ -1,0 +1,76 @@
+//! A difference between the robots, and how it acts.
+
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Description, SE3, SpatialInertia};
+
+/// A change that makes a number of the first robot the second's.
+#[derive(Clone, Debug)]
+pub enum Change {
+    Gravity([f64; 3]),
+    Joint(String, Property),
+    /// The inertias of these links.
+    Inertia(Vec<(String, SpatialInertia)>),
+    /// It enters no force here: limits, couplings, names.
+    NoForce,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Property {
+    Damping(f64),
+    Friction(f64),
+    Armature(f64),
+    Stiffness(f64),
+    SpringReference(f64),
+    Place(SE3, JointKind),
+}
+
+/// A cause.
+#[derive(Clone, Debug)]
+pub struct Cause {
+    /// "damping", "inertia", "limits" …
+    pub kind: &'static str,
+    /// The joint or link.
+    pub name: String,
+    /// What happened, with the reason if one is known.
+    pub sentence: String,
+    pub has_reason: bool,
+    pub change: Change,
+    /// What the change alone does: "gravity torque of `joint6` by up to 0.97 N m".
+    pub effect: Option<String>,
+}
+
+impl Cause {
+    pub fn new(kind: &'static str, name: &str, sentence: String, has_reason: bool, change: Change) -> Self {
+        Cause { kind, name: name.to_string(), sentence, has_reason, change, effect: None }
+    }
+}
+
+impl Change {
+    pub fn apply(&self, robot: &mut Description) {
+        match self {
+            Change::Gravity(gravity) => robot.gravity = *gravity,
+            Change::Joint(name, property) => {
+                robot.joints.iter_mut().filter(|joint| joint.name == *name).for_each(|joint| property.set(joint));
+            }
+            Change::Inertia(links) => {
+                for (name, inertia) in links {
+                    robot.links.iter_mut().filter(|link| link.name == *name).for_each(|link| link.inertia = *inertia);
+                }
+            }
+            Change::NoForce => {}
+        }
+    }
+}
+
+impl Property {
+    fn set(self, joint: &mut Joint) {
+        match self {
+            Property::Damping(x) => joint.damping = x,
+            Property::Friction(x) => joint.friction = x,
+            Property::Armature(x) => joint.armature = x,
+            Property::Stiffness(x) => joint.stiffness = x,
+            Property::SpringReference(x) => joint.spring_reference = x,
+            Property::Place(origin, kind) => (joint.origin, joint.kind) = (origin, kind),
+        }
+    }
+}

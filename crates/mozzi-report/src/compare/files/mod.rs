@@ -1,0 +1,37 @@
+//! Compares the files of one robot, without a simulator: [`compare_files`] matches joints by name and place, compares M
+//! and forces at random states, and searches for the causes.
+//!
+//! A cause is a change of the first robot that makes one of its numbers the second's. If all causes together make the
+//! forces agree, the list is complete. Its reason is an error of a converter which, made with the first file's numbers,
+//! gives the second's.
+
+mod cause;
+mod comparison;
+mod forces;
+mod inertia;
+mod joints;
+mod matching;
+mod merged;
+mod number;
+mod report;
+mod solid;
+
+pub use comparison::{FilesComparison, compare_files};
+
+use mozzi::{Model, SO3};
+use mozzi_urdf::geometry::Shape;
+use std::collections::BTreeMap;
+
+/// One of the two robots.
+#[derive(Clone, Debug)]
+pub struct RobotFile {
+    /// The file's name.
+    pub name: String,
+    /// The robot.
+    pub model: Model,
+    /// The axes in which the file gives each link's inertia, in the link's: see
+    /// [`Loaded::inertial_axes`](mozzi_urdf::Loaded::inertial_axes).
+    pub inertial_axes: BTreeMap<String, SO3>,
+    /// The shapes of its links.
+    pub shapes: Vec<Shape>,
+}

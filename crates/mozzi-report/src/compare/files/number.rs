@@ -1,0 +1,42 @@
+//! Why a number became another.
+
+use std::f64::consts::PI;
+
+/// Equal to the digits that a file has.
+pub fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
+}
+
+/// The same number, but for a unit, a decimal point or a sign; in words that follow the number's name.
+pub fn reason(a: f64, b: f64) -> Option<String> {
+    if b == 0.0 {
+        return Some("is dropped".to_string());
+    }
+    if a == 0.0 {
+        return Some("appears".to_string());
+    }
+    let ratio = b / a;
+    if same(ratio, -1.0) {
+        return Some("has the other sign".to_string());
+    }
+    for (factor, what) in [(180.0 / PI, "is in degrees"), (PI / 180.0, "is in radians, not degrees")] {
+        if (ratio / factor - 1.0).abs() < 1e-6 {
+            return Some(what.to_string());
+        }
+    }
+    ten(ratio).map(|power| format!("is off by a factor 1e{power}: a unit or a decimal point"))
+}
+
+/// The exponent of a power of ten other than 1.
+pub fn ten(ratio: f64) -> Option<i32> {
+    let power = ratio.abs().log10().round();
+    let is_power = ratio > 0.0 && power != 0.0 && power.abs() <= 18.0 && (ratio / 10f64.powf(power) - 1.0).abs() < 1e-6;
+    is_power.then_some(power as i32)
+}
+
+/// At most six digits.
+pub fn shown(x: f64) -> String {
+    let rounded = format!("{x:.5e}").parse::<f64>().unwrap_or(x);
+    let is_plain = rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs());
+    if is_plain { rounded.to_string() } else { format!("{rounded:e}") }
+}

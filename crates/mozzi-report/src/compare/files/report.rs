@@ -1,0 +1,112 @@
+//! The comparison of two files as text and as JSON.
+
+use super::comparison::FilesComparison;
+use super::forces::{Gap, Gaps, States};
+use super::number::shown;
+use crate::text::Page;
+use serde_json::{Value, json};
+
+/// Causes beyond this number are counted.
+const SHOWN: usize = 40;
+
+/// What a change does to gravity, or else to the torques, or else to M.
+pub fn effect(states: &States, [M, g, tau]: &Gaps) -> Option<String> {
+    let counts = |gap: &Gap, scale: f64| gap.most > 1e-12 * gap.scale.max(scale) && gap.most > 0.0;
+    let of = |gap: &Gap, what: &str| {
+        let joint = gap.joints.first()?;
+        Some(format!("{what} of {joint} by up to {} {}", digits(gap.most), states.unit(joint)))
+    };
+    if counts(g, tau.scale) {
+        return of(g, "gravity torque");
+    }
+    if counts(tau, 0.0) {
+        return of(tau, "torque");
+    }
+    counts(M, 0.0).then(|| format!("M[{}] by up to {}", M.joints.join(", "), digits(M.most)))
+}
+
+/// Three digits.
+fn digits(x: f64) -> String {
+    format!("{x:.2e}").parse::<f64>().map_or_else(|_| x.to_string(), shown)
+}
+
+pub fn text(it: &FilesComparison) -> String {
+    let mut page = Page::default();
+    let [a, b] = &it.names;
+    let verdict = match (it.agrees(), it.is_explained()) {
+        (true, _) => "the same robot",
+        (_, true) => "another robot; the causes below explain it",
+        _ => "another robot; not all of it is explained",
+    };
+    page.line(format!("{a} and {b}: {verdict}"));
+    page.line(format!(
+        "{} moving joints in both, {} random states of seed {}, tolerance {:e} of the largest number",
+        it.common, it.states, it.seed, it.tolerance
+    ));
+    for (here, there) in &it.renamed {
+        page.line(format!("  `{here}` is `{there}` in {b}, known by its place"));
+    }
+    for (only, name) in it.only.iter().zip([a, b]) {
+        if !only.is_empty() {
+            let list = only.iter().map(|joint| format!("`{joint}`")).collect::<Vec<_>>().join(", ");
+            page.line(format!("  moves in {name} only, and is held at 0: {list}"));
+        }
+    }
+    if let Some(base) = &it.base {
+        page.line(format!("  {base}"));
+    }
+    let labels = ["M", "gravity torque", "torque"];
+    let is_there =
+        |gap: &Gap| gap.most > it.tolerance * gap.scale.max(if it.forces_agree() { f64::INFINITY } else { 0.0 });
+    if it.forces_agree() {
+        page.line("  M, gravity torques and torques agree".to_string());
+    }
+    for ((gap, what), unit) in it.before.iter().zip(labels).zip(&it.units).filter(|((gap, _), _)| is_there(gap)) {
+        let place = gap.joints.join(", ");
+        let (most, scale) = (digits(gap.most), digits(gap.scale));
+        page.line(match what {
+            "M" => format!("  {what}[{place}] differs by up to {most}, of {scale}"),
+            _ => format!("  {what} of {place} differs by up to {most} {unit}, of {scale}"),
+        });
+    }
+    for cause in it.causes.iter().take(SHOWN) {
+        page.line(format!("  - {}", cause.sentence));
+        if let Some(effect) = cause.effect.as_ref().filter(|_| it.causes.len() > 1) {
+            page.line(format!("    alone: {effect}"));
+        }
+    }
+    if it.causes.len() > SHOWN {
+        page.line(format!("  and {} more; --json has all", it.causes.len() - SHOWN));
+    }
+    if !it.forces_agree() {
+        let part = |gap: &Gap| if gap.scale > 0.0 { gap.most / gap.scale } else { 0.0 };
+        let worst = it.after.iter().map(part).fold(0.0, f64::max);
+        page.line(format!("  with all of these accounted for, the forces agree to {worst:.0e}"));
+    }
+    page.end()
+}
+
+pub fn json(it: &FilesComparison) -> Value {
+    let gaps = |gaps: &Gaps| {
+        let gap = |gap: &Gap| json!({ "most": gap.most, "of": gap.scale, "joints": gap.joints });
+        json!({ "mass_matrix": gap(&gaps[0]), "gravity_forces": gap(&gaps[1]), "inverse_dynamics": gap(&gaps[2]) })
+    };
+    json!({
+        "files": it.names,
+        "agrees": it.agrees(),
+        "explained": it.is_explained(),
+        "tolerance": it.tolerance,
+        "states": it.states,
+        "seed": it.seed,
+        "joints": it.common,
+        "renamed": it.renamed.iter().map(|(here, there)| json!([here, there])).collect::<Value>(),
+        "only": it.only,
+        "base": it.base,
+        "differences": gaps(&it.before),
+        "differences_explained": gaps(&it.after),
+        "causes": it.causes.iter().map(|cause| json!({
+            "kind": cause.kind, "name": cause.name, "message": cause.sentence, "has_reason": cause.has_reason,
+            "effect": cause.effect,
+        })).collect::<Value>(),
+    })
+}

@@ -1,0 +1,46 @@
+//! What a writer of a format returns.
+
+use std::fmt;
+
+/// A robot's text in a format, and what the format cannot say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// The text.
+    pub text: String,
+    /// What the text leaves out or says in other words, each with its element: "joint `a`: velocity limit 2". Empty if
+    /// reading the text gives the same robot up to rounding.
+    pub losses: Vec<String>,
+    /// What readers of the format may refuse.
+    pub remarks: Vec<String>,
+}
+
+/// The parts of a robot without which it would be another one, and which a format cannot express.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotWritten {
+    /// The format: "SDFormat" or "MJCF".
+    pub language: &'static str,
+    /// Each with its element.
+    pub reasons: Vec<String>,
+}
+
+impl fmt::Display for NotWritten {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} cannot express {}", self.language, self.reasons.join(", nor "))
+    }
+}
+
+impl std::error::Error for NotWritten {}
+
+/// The names that are lost, as one line: "the names of 3 fixed joints (`a`, `b`, …)".
+pub(crate) fn names_of(what: &str, names: &[&str]) -> Option<String> {
+    const SHOWN: usize = 4;
+    let mut shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
+    if names.len() > SHOWN {
+        shown.push("…".to_string());
+    }
+    match names.len() {
+        0 => None,
+        1 => Some(format!("{what} {}", shown.join(", "))),
+        count => Some(format!("{what} {} ({count})", shown.join(", "))),
+    }
+}
