@@ -17,6 +17,8 @@ pub enum Kind {
     Viscous(usize),
     /// Coulomb friction: entry k of the parameters.
     Coulomb(usize),
+    /// What acts like the rotor inertia of entry k, behind the gears, where no rotor is felt: no part of the robot.
+    Apparent(usize),
     /// Stribeck friction of an independent joint.
     Stribeck(usize),
     /// Stiffness: entry k of the parameters.
@@ -39,7 +41,8 @@ impl Kind {
 /// A parameter that is estimated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
-    /// As in [`parameter_names`](Model::parameter_names); `joint.stribeck`, `joint.offset`, `payload.m`, `joint.gain`.
+    /// As in [`parameter_names`](Model::parameter_names); `joint.stribeck`, `joint.offset`, `payload.m`, `joint.gain`,
+    /// `joint.apparent_inertia`.
     pub name: String,
     /// What it is.
     pub kind: Kind,
@@ -135,6 +138,12 @@ impl<'m> Columns<'m> {
             // preloads, which an offset contains
             fixed.extend((0..places.len()).map(|place| first + OF_JOINT * place + 4).map(|k| (k, values[k])));
         }
+        if choice.is_apparent() && !choice.armature {
+            let joints = model.joint_names().zip(0..);
+            joints.for_each(|(joint, place)| {
+                add(format!("{joint}.apparent_inertia"), Kind::Apparent(first + OF_JOINT * place), 0.0);
+            });
+        }
         let payload = choice.payload.map(|frame| Carried::new(model, frame)).transpose()?;
         if payload.is_some() {
             for (k, name) in names.iter().take(10).enumerate() {
@@ -167,6 +176,29 @@ impl<'m> Columns<'m> {
         (0..self.count()).filter(|&k| is_first(&self.unknowns[k])).collect()
     }
 
+    /// The unit of unknown k.
+    pub fn unit(&self, k: usize) -> &'static str {
+        let Unknown { name, kind, .. } = &self.unknowns[k];
+        let joint = name.rsplit_once('.').map_or("", |(joint, _)| joint);
+        let joint = self.model.description().joints.iter().find(|one| one.name == joint);
+        let slides = joint.is_some_and(
+            |joint| matches!(joint.kind, mozzi::model::description::JointKind::Screw(A) if A.is_prismatic()),
+        );
+        match (kind, slides) {
+            (Kind::Link(k) | Kind::Payload(k), _) => ["kg", "kg m", "kg m²"][[0, 1, 1, 1, 2, 2, 2, 2, 2, 2][k % 10]],
+            (Kind::Armature(_) | Kind::Apparent(_), false) => "kg m²",
+            (Kind::Armature(_) | Kind::Apparent(_), true) => "kg",
+            (Kind::Viscous(_), false) => "N m s/rad",
+            (Kind::Viscous(_), true) => "N s/m",
+            (Kind::Stiffness(_), false) => "N m/rad",
+            (Kind::Stiffness(_), true) => "N/m",
+            (Kind::Coulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), false) => "N m",
+            (Kind::Coulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), true) => "N",
+            (Kind::Gain(_), false) => "N m/A",
+            (Kind::Gain(_), true) => "N/A",
+        }
+    }
+
     /// The robot's own values.
     pub fn prior(&self) -> Vec<f64> {
         self.unknowns.iter().map(|unknown| unknown.prior).collect()
@@ -180,6 +212,11 @@ impl<'m> Columns<'m> {
     /// The first row of the joint whose parameters hold entry k.
     pub(crate) fn row_of(&self, k: usize) -> usize {
         self.rows[self.place_of(k)].start
+    }
+
+    /// Whether entry k belongs to one joint, not to a rotor that several joints turn.
+    pub(crate) fn is_of_joint(&self, k: usize) -> bool {
+        k < link_parameters(self.model) + OF_JOINT * self.rows.len()
     }
 
     /// The index of the joint whose parameters hold entry k.
@@ -275,7 +312,7 @@ impl<'c, 'm> Equations<'c, 'm> {
         let stribeck = of(stribeck, &|x| shape.stribeck(x));
         for (column, unknown) in columns.unknowns.iter().enumerate() {
             match unknown.kind {
-                Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Stiffness(k) => {
+                Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Stiffness(k) | Kind::Apparent(k) => {
                     (0..n).for_each(|j| A[j * P + column] = Y[j * p + k]);
                 }
                 Kind::Coulomb(k) => {

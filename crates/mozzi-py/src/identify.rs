@@ -162,7 +162,11 @@ pub fn _identify<'py>(
         let html = mozzi_report::fit_html(&found, &judged, &validations);
         let mut series = Vec::new();
         for samples in &found.samples {
-            series.push((samples.t.clone(), samples.tau.clone(), predict(&found.setup.columns, x, samples)?));
+            series.push((
+                samples.t.clone(),
+                samples.tau.clone(),
+                predict(&found.setup.columns, &found.estimates.consistent.predicting(), samples)?,
+            ));
         }
         Ok((json, html, description, series))
     };

@@ -14,9 +14,11 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
         .iter()
         .enumerate()
         .map(|(k, unknown)| {
+            let standing = &judged.standings[k];
             json!({
-                "name": unknown.name, "before": unknown.prior, "value": optimum.x[k],
-                "deviation": optimum.deviations[k], "prior_share": optimum.prior_share[k],
+                "name": unknown.name, "unit": setup.columns.unit(k), "before": unknown.prior, "value": optimum.x[k],
+                "deviation": standing.deviation, "only": standing.only, "prior_share": optimum.prior_share[k],
+                "apparent": optimum.apparent[k],
             })
         })
         .collect();
@@ -82,6 +84,7 @@ fn of_errors(errors: &Errors) -> Value {
     json!({
         "force": errors.force, "robot": errors.robot, "friction": errors.friction,
         "least_squares": errors.least_squares, "consistent": errors.consistent,
+        "written": errors.written, "nrms_written": errors.normalized(&errors.written),
         "nrms": errors.normalized(&errors.consistent),
     })
 }

@@ -107,6 +107,9 @@ pub struct IdentifyArguments {
     /// The topic of a bag, or the beginning of the columns' path
     #[arg(long, value_name = "NAME")]
     topic: Option<String>,
+    /// Print every parameter, what each column of the logs is taken for, and what the motion does not determine
+    #[arg(long)]
+    all: bool,
     /// Print what each column of the logs is taken for, and nothing else
     #[arg(long)]
     columns: bool,
@@ -192,7 +195,11 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     }
     let text = match arguments.robot.json {
         true => json::print(&json::of_robot(&model, mozzi_report::fit_json(&found, &judged, &validations))),
-        false => page::text(&verdict, &found, &judged, &validations, &columns, &written),
+        false => {
+            let (verdict, judged, validations, logs) = (&verdict, &judged, &validations, &columns);
+            let is_all = arguments.all;
+            page::text(&found, &page::Shown { verdict, judged, validations, logs, written: &written, is_all })
+        }
     };
     match found.estimates.consistent.is_stopped {
         true => Err(Failure::Stopped(text)),
