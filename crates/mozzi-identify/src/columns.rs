@@ -1,6 +1,7 @@
 //! The linear equations A x = b of one sample: which unknowns there are, and their columns.
 
 use crate::choice::Choice;
+use crate::rotors::{rate, rates};
 use crate::signals::Samples;
 use crate::{Error, payload::Carried};
 use mozzi::quantities::{Query, Regressor, TipForces};
@@ -17,6 +18,10 @@ pub enum Kind {
     Viscous(usize),
     /// Coulomb friction: entry k of the parameters.
     Coulomb(usize),
+    /// Viscous friction of a rotor that several joints turn.
+    RotorViscous(usize),
+    /// Its Coulomb friction.
+    RotorCoulomb(usize),
     /// What acts like the rotor inertia of entry k, behind the gears, where no rotor is felt: no part of the robot.
     Apparent(usize),
     /// Stribeck friction of an independent joint.
@@ -34,7 +39,16 @@ pub enum Kind {
 impl Kind {
     /// Whether the parameter cannot be negative by itself.
     pub fn is_positive(self) -> bool {
-        matches!(self, Kind::Armature(_) | Kind::Viscous(_) | Kind::Coulomb(_) | Kind::Stiffness(_) | Kind::Gain(_))
+        matches!(
+            self,
+            Kind::Armature(_)
+                | Kind::Viscous(_)
+                | Kind::Coulomb(_)
+                | Kind::RotorViscous(_)
+                | Kind::RotorCoulomb(_)
+                | Kind::Stiffness(_)
+                | Kind::Gain(_)
+        )
     }
 }
 
@@ -75,6 +89,8 @@ pub struct Columns<'m> {
     /// Coulomb friction that is not estimated, by place.
     fixed_coulomb: Vec<f64>,
     payload: Option<Carried>,
+    /// By rotor: its rate over each velocity.
+    pub(crate) rotors: Vec<Vec<f64>>,
     /// The row of each joint parameter, by place.
     rows: Vec<core::ops::Range<usize>>,
 }
@@ -126,6 +142,14 @@ impl<'m> Columns<'m> {
                 false => fixed.push((k, values[k])),
             }
         }
+        for (r, rotor) in model.description().rotors.iter().enumerate() {
+            if choice.viscous {
+                add(format!("{}.damping", rotor.name), Kind::RotorViscous(r), 0.0);
+            }
+            if choice.coulomb {
+                add(format!("{}.friction", rotor.name), Kind::RotorCoulomb(r), 0.0);
+            }
+        }
         let joints: Vec<&str> = model.joint_names().collect();
         if choice.stribeck.is_some() {
             joints.iter().enumerate().for_each(|(k, joint)| add(format!("{joint}.stribeck"), Kind::Stribeck(k), 0.0));
@@ -159,7 +183,7 @@ impl<'m> Columns<'m> {
             return Err(Error::NotExciting { reason: "no parameter is chosen to be estimated".into() });
         }
         let rows = places.iter().map(|place| place.velocities()).collect();
-        Ok(Columns { model, choice, unknowns, fixed, fixed_coulomb, payload, rows })
+        Ok(Columns { model, choice, unknowns, fixed, fixed_coulomb, payload, rotors: rates(model), rows })
     }
 
     /// The number of unknowns.
@@ -188,12 +212,12 @@ impl<'m> Columns<'m> {
             (Kind::Link(k) | Kind::Payload(k), _) => ["kg", "kg m", "kg m²"][[0, 1, 1, 1, 2, 2, 2, 2, 2, 2][k % 10]],
             (Kind::Armature(_) | Kind::Apparent(_), false) => "kg m²",
             (Kind::Armature(_) | Kind::Apparent(_), true) => "kg",
-            (Kind::Viscous(_), false) => "N m s/rad",
-            (Kind::Viscous(_), true) => "N s/m",
+            (Kind::Viscous(_) | Kind::RotorViscous(_), false) => "N m s/rad",
+            (Kind::Viscous(_) | Kind::RotorViscous(_), true) => "N s/m",
             (Kind::Stiffness(_), false) => "N m/rad",
             (Kind::Stiffness(_), true) => "N/m",
-            (Kind::Coulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), false) => "N m",
-            (Kind::Coulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), true) => "N",
+            (Kind::Coulomb(_) | Kind::RotorCoulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), false) => "N m",
+            (Kind::Coulomb(_) | Kind::RotorCoulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), true) => "N",
             (Kind::Gain(_), false) => "N m/A",
             (Kind::Gain(_), true) => "N/A",
         }
@@ -317,6 +341,13 @@ impl<'c, 'm> Equations<'c, 'm> {
                 }
                 Kind::Coulomb(k) => {
                     columns.rows[columns.place_of(k)].clone().for_each(|j| A[j * P + column] = coulomb[j]);
+                }
+                Kind::RotorViscous(r) | Kind::RotorCoulomb(r) => {
+                    let J = &columns.rotors[r];
+                    let omega = rate(J, dtheta);
+                    let is_viscous = matches!(unknown.kind, Kind::RotorViscous(_));
+                    let of_rotor = if is_viscous { omega } else { shape.coulomb(omega) };
+                    (0..n).for_each(|j| A[j * P + column] = J[j] * of_rotor);
                 }
                 Kind::Stribeck(place) => {
                     columns.rows[place].clone().for_each(|j| A[j * P + column] = stribeck[j]);

@@ -23,6 +23,7 @@ pub fn parameters(columns: &Columns<'_>, x: &[f64]) -> Result<Vec<f64>, Error> {
             }
             Kind::Payload(k) => payload[k] = value,
             Kind::Stribeck(_) | Kind::Offset(_) | Kind::Gain(_) | Kind::Apparent(_) => {}
+            Kind::RotorViscous(_) | Kind::RotorCoulomb(_) => {}
         }
     }
     if let Some(frame) = columns.choice.payload {
@@ -77,6 +78,7 @@ pub(crate) fn predict_some(
         // an offset contains the spring's preload
         names.iter().zip(&mut pi).filter(|(name, _)| name.ends_with(".preload")).for_each(|(_, value)| *value = 0.0);
     }
+    let mut of_rotors = vec![[0.0; 2]; columns.rotors.len()];
     let (mut offset, mut stribeck, mut gain) = (vec![0.0; n], vec![0.0; n], vec![1.0; n]);
     for (unknown, &value) in columns.unknowns.iter().zip(x) {
         match unknown.kind {
@@ -84,6 +86,8 @@ pub(crate) fn predict_some(
             Kind::Gain(j) => gain[j] = value,
             Kind::Stribeck(place) => places[place].velocities().for_each(|j| stribeck[j] = value),
             Kind::Apparent(k) => pi[k] += value,
+            Kind::RotorViscous(r) => of_rotors[r][0] = value,
+            Kind::RotorCoulomb(r) => of_rotors[r][1] = value,
             _ => {}
         }
     }
@@ -104,6 +108,11 @@ pub(crate) fn predict_some(
         );
         let environment = Environment { applied: &applied, ..robot.environment() };
         fast::evaluate(&query, &robot, &[theta, dtheta, ddtheta], &environment, &mut workspace, &mut [tau]);
+        for (J, [d, mu]) in columns.rotors.iter().zip(&of_rotors) {
+            let omega = crate::rotors::rate(J, dtheta);
+            let force = d * omega + mu * shape.coulomb(omega);
+            tau.iter_mut().zip(J).for_each(|(tau, J)| *tau += J * force);
+        }
         for j in 0..n {
             let of = |given: &Option<Vec<f64>>, of_one: f64| given.as_ref().map_or(of_one, |table| table[k * n + j]);
             let coulomb = of(&samples.coulomb, shape.coulomb(dtheta[j]));

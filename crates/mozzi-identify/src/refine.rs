@@ -73,6 +73,9 @@ pub fn refine(
             "links, friction, armature, springs and offsets",
         ));
     }
+    if !columns.rotors.is_empty() {
+        return Err(wrong("a rotor that several joints turn", "rotors of one joint each"));
+    }
     let mut windows = Vec::new();
     for samples in &found.samples {
         let length = (options.window * samples.rate).round() as usize;
@@ -224,6 +227,7 @@ impl Rollouts<'_, '_> {
         let gradient = columns.unknowns.iter().map(|unknown| match unknown.kind {
             Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Coulomb(k) | Kind::Stiffness(k) => by_pi[k],
             Kind::Offset(j) => by_offset[j],
+            Kind::RotorViscous(_) | Kind::RotorCoulomb(_) => 0.0,
             Kind::Apparent(_) | Kind::Stribeck(_) | Kind::Payload(_) | Kind::Gain(_) => 0.0,
         });
         let rms = squares.map(|list| list.into_iter().map(|sum: f64| (sum / count).sqrt()).collect());

@@ -49,6 +49,16 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
             })
         })
         .collect();
+    let servos: Vec<Value> = judged
+        .servos
+        .iter()
+        .map(|one| {
+            json!({
+                "joint": one.joint, "stiffness": one.stiffness, "damping": one.damping, "delay": one.delay,
+                "bias": one.bias, "nrms": one.nrms,
+            })
+        })
+        .collect();
     let verdict = Verdict::new(found, validations.iter().map(|(_, errors)| errors));
     let validations: Vec<Value> =
         validations.iter().map(|(file, errors)| json!({ "log": file, "errors": of_errors(errors) })).collect();
@@ -64,6 +74,7 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
         "left_out": found.left_out.as_ref().map(of_errors),
         "held_out": found.held_out.as_ref().map(of_errors),
         "validations": validations,
+        "servos": servos,
         "residuals": residuals,
         "findings": findings,
     })

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 28] = [
+const IMPORTED: [(&str, &str); 29] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
@@ -14,6 +14,7 @@ const IMPORTED: [(&str, &str); 28] = [
     ("crates/mozzi-py/README.md", "manual/python.md"),
     ("docs/cpp.md", "manual/cpp.md"),
     ("docs/identify.md", "manual/identify.md"),
+    ("docs/sim-to-real.md", "manual/sim-to-real.md"),
     ("docs/gradients.md", "manual/gradients.md"),
     ("docs/jax.md", "manual/jax.md"),
     ("docs/pytorch.md", "manual/pytorch.md"),

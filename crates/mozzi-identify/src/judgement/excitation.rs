@@ -123,8 +123,8 @@ impl<'c, 'm> Advisor<'c, 'm> {
         let kind = self.columns.unknowns[k].kind;
         let name = self.columns.unknowns[k].name.rsplit_once('.').map_or("", |(joint, _)| joint);
         match kind {
-            Kind::Viscous(_) => format!("move {name} at different speeds"),
-            Kind::Coulomb(_) | Kind::Stribeck(_) => {
+            Kind::Viscous(_) | Kind::RotorViscous(_) => format!("move {name} at different speeds"),
+            Kind::Coulomb(_) | Kind::RotorCoulomb(_) | Kind::Stribeck(_) => {
                 format!("let {name} reverse, and move it slowly in both directions")
             }
             Kind::Offset(_) => format!("move {name} in both directions at the same postures"),

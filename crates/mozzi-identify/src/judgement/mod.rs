@@ -8,7 +8,7 @@ pub mod sensor;
 pub mod suspicion;
 pub mod velocities;
 
-use crate::{Error, Finding, Identification, Log};
+use crate::{Error, Finding, Identification, Kind, Log, Servo, servos};
 use determined::{Standing, standings};
 use excitation::Parameter;
 use residuals::Residual;
@@ -22,6 +22,8 @@ pub struct Judgement {
     pub predicted: Vec<Vec<f64>>,
     /// Base parameters.
     pub parameters: Vec<Parameter>,
+    /// Position controllers, if targets were logged.
+    pub servos: Vec<Servo>,
     /// By unknown: whether the data determines it.
     pub standings: Vec<Standing>,
     /// Mistakes in the logs, and effects that the model lacks.
@@ -77,7 +79,38 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
     }
     findings.extend(apparent(found));
     let standings = standings(found, &parameters);
-    Ok(Judgement { residuals, predicted, parameters, standings, findings })
+    let servos = match model.configuration_space().is_flat() {
+        true => servos(&names, &found.samples, &gains(found)),
+        false => Vec::new(),
+    };
+    findings.extend(unlike_a_servo(&servos));
+    Ok(Judgement { servos, residuals, predicted, parameters, standings, findings })
+}
+
+/// N m or N of one unit of each force: the drive gains, if currents were logged.
+fn gains(found: &Identification<'_>) -> Vec<f64> {
+    let columns = &found.setup.columns;
+    let x = &found.estimates.consistent.x;
+    (0..columns.model.n()).map(|j| columns.index(Kind::Gain(j)).map_or(1.0, |k| x[k])).collect()
+}
+
+/// Joints whose forces are no function of target, position and velocity as in a PD law.
+fn unlike_a_servo(servos: &[Servo]) -> Option<Finding> {
+    /// A larger error over force.
+    const UNLIKE: f64 = 0.3;
+    let is_unlike = |servo: &&Servo| servo.nrms > UNLIKE || servo.stiffness[0] <= 0.0;
+    let bad: Vec<String> =
+        servos.iter().filter(is_unlike).map(|servo| format!("{} ({:.0} %)", servo.joint, 100.0 * servo.nrms)).collect();
+    (!bad.is_empty()).then(|| {
+        Finding::warning(
+            "no_servo",
+            format!(
+                "kp (θ*(t − δ) − θ) − kd θ̇ + b does not explain the forces of {}: an integrator, feed-forward, saturation \
+                 or another controller; their gains mean little",
+                bad.join(", ")
+            ),
+        )
+    })
 }
 
 /// Inertia and damping that predictions contain and no robot has.

@@ -1,10 +1,12 @@
 //! `mozzi identify`: the robot's parameters from logs of its motion.
 
+mod coupled;
 mod join;
 mod joint_states;
 mod log_file;
 mod output;
 mod page;
+mod simulators;
 mod topics;
 
 use crate::columns::save;
@@ -16,6 +18,7 @@ use crate::recogniser::{Force, Row};
 use crate::robot::FileArguments;
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
+use coupled::with_rotors;
 use log_file::{Given, read_log, read_table};
 use mozzi::Model;
 use mozzi_identify::judgement::judge;
@@ -40,6 +43,10 @@ pub struct IdentifyArguments {
     /// Keep the old numbers in comments of OUT
     #[arg(long, requires = "out")]
     old_values: bool,
+    /// Print armature, friction and the gains of position controllers in the words of a simulator, and where each
+    /// parameter went
+    #[arg(long, value_name = "SIMULATOR", conflicts_with = "json")]
+    write: Option<simulators::Simulator>,
     /// Write a report: forces, residuals, parameters, ellipsoids of inertia
     #[arg(long, value_name = "FILE.html")]
     report: Option<String>,
@@ -101,6 +108,10 @@ pub struct IdentifyArguments {
     /// Lock a joint that the log does not move, at this position, rad or m; `*` matches any text: 'gripper_*=0'
     #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
     lock: Vec<String>,
+    /// Joints that one rotor turns together, as in the wrists of some arms: its inertia and friction act on the sum of
+    /// their motions, each times its ratio, 1 unless it is given
+    #[arg(long, value_name = "JOINT[=RATIO],JOINT[=RATIO]", allow_hyphen_values = true)]
+    coupled: Vec<String>,
     /// The log's names of joints, in the robot's order
     #[arg(long, value_name = "NAME,NAME,…", value_delimiter = ',')]
     order: Vec<String>,
@@ -148,9 +159,10 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
+    let coupled = with_rotors(&whole, &arguments.coupled)?;
     let lock = arguments.lock_list(&whole)?;
     let locks = edits::locks(&lock, &whole)?;
-    let model = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks)? };
+    let model = if locks.is_empty() { coupled } else { coupled.with_locked_joints(&locks)? };
     let given = arguments.given();
     if arguments.columns {
         return arguments.column_tables(&model, &given);
@@ -198,7 +210,10 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
         false => {
             let (verdict, judged, validations, logs) = (&verdict, &judged, &validations, &columns);
             let is_all = arguments.all;
-            page::text(&found, &page::Shown { verdict, judged, validations, logs, written: &written, is_all })
+            let text =
+                page::text(&found, &page::Shown { verdict, judged, validations, logs, written: &written, is_all });
+            let words = arguments.write.map(|to| simulators::page(to, &found, &robot, &judged.servos));
+            text + &words.unwrap_or_default()
         }
     };
     match found.estimates.consistent.is_stopped {

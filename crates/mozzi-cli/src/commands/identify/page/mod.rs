@@ -59,6 +59,7 @@ pub fn text(found: &Identification<'_>, shown: &Shown) -> String {
     }
     joints(&mut page, found, judged);
     bodies(&mut page, found, judged);
+    servos(&mut page, judged);
     let count = judged.parameters.iter().filter(|parameter| parameter.is_weak()).count();
     if shown.is_all {
         parameters(&mut page, found, judged);
@@ -115,6 +116,25 @@ fn joints(page: &mut Page, found: &Identification<'_>, judged: &Judgement) {
     }
     let align = format!("l{}", "r".repeat(kinds.len()));
     page.title("joints; ?: not determined by itself").lines(&table(&rows, &align));
+}
+
+/// Gains and delay of position controllers.
+fn servos(page: &mut Page, judged: &Judgement) {
+    let Some(first) = judged.servos.first() else { return };
+    let head = ["", "kp, N m/rad or N/m", "kd, N m s/rad or N s/m", "bias, N m or N", "error"];
+    let mut rows = vec![head.map(str::to_string).to_vec()];
+    for servo in &judged.servos {
+        let pair = |[value, deviation]: [f64; 2]| format!("{value:.3} ± {deviation:.3}");
+        rows.push(vec![
+            servo.joint.clone(),
+            pair(servo.stiffness),
+            pair(servo.damping),
+            format!("{:.3}", servo.bias),
+            format!("{:.1} %", 100.0 * servo.nrms),
+        ]);
+    }
+    let title = format!("position controllers; targets act {:.1} ms later", 1e3 * first.delay);
+    page.title(&title).lines(&table(&rows, "lrrrr"));
 }
 
 /// Masses, before and after, and what is known of them.
