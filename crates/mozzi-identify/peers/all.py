@@ -41,7 +41,7 @@ def main() -> None:
             for kind in ("least_squares", "consistent", "written"):
                 print(f"{'mozzi ' + torque + ', ' + kind:34}", " ".join(f"{e:7.4f}" for e in errors[kind]), flush=True)
         lock = [word for joint in locks for word in ("--lock", joint)]
-        scripts = [["figaroh_fit.py", "--armature"], ["figaroh_fit.py", "--tanh"]]
+        scripts = [["figaroh_fit.py"], ["figaroh_fit.py", "--armature", "--tanh"]]
         scripts += [["mujoco_sysid.py", "--stride", "3"]] if given.sysid else []
         for script, *more in scripts:
             print(f"{script} {' '.join(more)}", flush=True)

@@ -104,12 +104,11 @@ def main() -> None:
     worst = max(np.max(np.abs(kp / KP - 1)), np.max(np.abs(kd / KD - 1)), abs(delay / DELAY - 1))
     print(f"largest error of a gain or the delay: {100 * worst:.2f} %")
     data, torques = mujoco.MjData(identified), []
-    friction = identified.dof_frictionloss.copy()
-    identified.dof_frictionloss[:] = 0.0
+    friction = identified.dof_frictionloss
     for row in unseen:
         data.qpos[:], data.qvel[:], data.qacc[:] = row[1:4], row[4:7], row[13:16]
         mujoco.mj_inverse(identified, data)
-        torques.append(data.qfrc_inverse + friction * np.tanh(row[4:7] / 0.05))
+        torques.append(data.qfrc_inverse.copy())
     measured = unseen[:, 7:10]
     error = np.sqrt(np.mean((np.array(torques) - measured) ** 2, axis=0)) / np.sqrt(np.mean(measured**2, axis=0))
     of_mujoco, of_mozzi = np.sqrt(np.mean(error**2)), found["validations"][0]["errors"]["nrms"]

@@ -211,7 +211,7 @@ fn places(to: Simulator, has_gains: bool) -> Vec<(&'static str, &'static str)> {
         true => [("kp", kp), ("kd", kd), ("delay", delay)],
         false => [("kp", NO_TARGETS), ("kd", NO_TARGETS), ("delay", NO_TARGETS)],
     };
-    const NO_TARGETS: &str = "not estimated: the log has no target positions";
+    const NO_TARGETS: &str = "not estimated: no targets logged";
     let (own, gains) = match to {
         Simulator::Mjcf => (
             [

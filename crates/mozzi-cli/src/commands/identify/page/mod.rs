@@ -46,16 +46,21 @@ pub fn text(found: &Identification<'_>, shown: &Shown) -> String {
     ));
     let is_judged = !shown.validations.is_empty() || found.held_out.is_some();
     if let Some(errors) = found.left_out.as_ref().filter(|_| shown.is_all || !is_judged) {
-        errors_table(&mut page, "error of predictions, five blocks of time left out in turn", found, errors);
+        errors_table(
+            &mut page,
+            "error of predictions, five blocks of time left out in turn",
+            (found, shown.is_all),
+            errors,
+        );
     }
     if let Some(errors) = &found.held_out {
-        errors_table(&mut page, "error on the part that was not fitted", found, errors);
+        errors_table(&mut page, "error on the part that was not fitted", (found, shown.is_all), errors);
     }
     for (file, errors) in shown.validations {
-        errors_table(&mut page, &format!("error on {file}"), found, errors);
+        errors_table(&mut page, &format!("error on {file}"), (found, shown.is_all), errors);
     }
     if found.left_out.is_none() && !is_judged {
-        errors_table(&mut page, "error on the samples that were fitted", found, &found.fitted);
+        errors_table(&mut page, "error on the samples that were fitted", (found, shown.is_all), &found.fitted);
     }
     joints(&mut page, found, judged);
     bodies(&mut page, found, judged);
@@ -156,21 +161,38 @@ fn bodies(page: &mut Page, found: &Identification<'_>, judged: &Judgement) {
 }
 
 /// Root mean square errors by joint.
-fn errors_table(page: &mut Page, title: &str, found: &Identification<'_>, errors: &Errors) {
-    let model = found.setup.columns.model;
-    let head = ["", "force", "as it was", "+ friction", "least squares", "identified", "written", "identified, %"];
-    let mut rows = vec![head.map(str::to_string).to_vec()];
-    let show = |x: f64| format!("{x:.3}");
-    let of = [&errors.robot, &errors.friction, &errors.least_squares, &errors.consistent, &errors.written];
-    for (j, name) in model.velocity_names().enumerate() {
+fn errors_table(page: &mut Page, title: &str, (found, is_all): (&Identification<'_>, bool), errors: &Errors) {
+    let of: Vec<(&str, &Vec<f64>)> = [
+        ("as it was", &errors.robot, true),
+        ("+ friction", &errors.friction, is_all),
+        ("least squares", &errors.least_squares, true),
+        ("identified", &errors.consistent, true),
+        ("written", &errors.written, is_all),
+    ]
+    .into_iter()
+    .filter_map(|(name, list, is_shown)| is_shown.then_some((name, list)))
+    .collect();
+    let head = ["", "force"].into_iter().chain(of.iter().map(|(name, _)| *name)).chain(["%"]);
+    let mut rows = vec![head.map(str::to_string).collect::<Vec<_>>()];
+    for (j, name) in found.setup.columns.model.velocity_names().enumerate() {
         let force = errors.force[j];
         let percent = if force > 0.0 { 100.0 * errors.consistent[j] / force } else { 0.0 };
-        let cells = std::iter::once(force).chain(of.map(|list| list[j])).map(show);
+        let cells = std::iter::once(force).chain(of.iter().map(|(_, list)| list[j])).map(|x| format!("{x:.3}"));
         rows.push([name.to_string()].into_iter().chain(cells).chain([format!("{percent:.2}")]).collect());
     }
-    let nrms = of.map(|x| format!("{:.2} %", 100.0 * errors.normalized(x)));
-    rows.push([vec!["NRMS".to_string(), String::new()], nrms.to_vec(), vec![String::new()]].concat());
-    page.title(&format!("{title}, N m or N")).lines(&table(&rows, "lrrrrrrr"));
+    let share = |list: &[f64]| format!("{:.2} %", 100.0 * errors.normalized(list));
+    let nrms = of.iter().map(|(_, list)| share(list));
+    let cells = ["NRMS".to_string(), String::new()].into_iter().chain(nrms).chain([String::new()]);
+    rows.push(cells.collect());
+    let align = format!("l{}", "r".repeat(rows[0].len() - 1));
+    page.title(&format!("{title}, N m or N")).lines(&table(&rows, &align));
+    let (identified, written) = (errors.normalized(&errors.consistent), errors.normalized(&errors.written));
+    if written > 1.01 * identified {
+        page.line(format!(
+            "  the written robot alone, without apparent inertia and damping: {}",
+            share(&errors.written)
+        ));
+    }
 }
 
 /// The tables of columns alone.
