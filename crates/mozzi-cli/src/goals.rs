@@ -69,11 +69,12 @@ pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
             unknown + 1
         )));
     }
-    let mut poses = Vec::new();
+    let (mut poses, commas) = (Vec::new(), text.has_decimal_commas());
     text.rows(false, |line, record| {
         let mut pose = [0.0; 7];
         for ((entry, name), place) in pose.iter_mut().zip(COLUMNS).zip(places) {
-            *entry = number(format!("{file}:{line}: column {} (`{name}`)", place + 1), &record[place])?;
+            let cell = if commas { record[place].replace(',', ".") } else { record[place].to_string() };
+            *entry = number(format!("{file}:{line}: column {} (`{name}`)", place + 1), &cell)?;
         }
         poses.push((line, from_pose(&format!("{file}:{line}: qw qx qy qz"), pose)?));
         Ok(())

@@ -83,3 +83,71 @@ fn bad_input_is_refused() {
     let (_, why) = complaint(&["excite", "double_pendulum", "--range", "elbow=0,1"]);
     assert!(why.contains("there is no joint `elbow`"), "{why}");
 }
+
+/// A log of a PD law whose targets are logged five rows before they act, so that gains and delay are known.
+fn controlled(folder: &Path) -> String {
+    let rows = std::fs::read_to_string(motion(folder)).expect("rows");
+    let table: Vec<Vec<f64>> =
+        rows.lines().skip(1).map(|row| row.split(',').map(|x| x.parse().expect("a number")).collect()).collect();
+    let names: Vec<&str> = rows.lines().next().expect("a header").split(',').collect();
+    let at = |name: &str| names.iter().position(|known| *known == name).expect("a column");
+    let mut text = "t,q_1,q_2,qd_1,qd_2,tau_1,tau_2,target_q_1,target_q_2\n".to_string();
+    for k in 0..table.len() - LATE {
+        let wanted = |j: usize, kp: f64, kd: f64| {
+            let value = |what: &str| table[k + LATE][at(&format!("{what}_{j}"))];
+            value("theta") + (value("tau") + kd * value("dtheta")) / kp
+        };
+        let own = ["t", "theta_1", "theta_2", "dtheta_1", "dtheta_2", "tau_1", "tau_2"].map(|name| table[k][at(name)]);
+        let all: Vec<String> =
+            own.into_iter().chain([wanted(1, 120.0, 9.0), wanted(2, 40.0, 3.0)]).map(|x| x.to_string()).collect();
+        text += &(all.join(",") + "\n");
+    }
+    common::file(folder, "controlled.csv", &text)
+}
+
+/// Rows between a target and its effect.
+const LATE: usize = 5;
+
+#[test]
+fn gains_and_delay_of_a_position_controlled_log() {
+    let folder = folder("identify_servo");
+    let log = controlled(&folder);
+    let found = json(&["identify", "double_pendulum", &log]);
+    let servos = found["servos"].as_array().expect("a list");
+    assert_eq!(servos.len(), 2, "{found}");
+    let text_of = std::fs::read_to_string(&log).expect("rows");
+    let time = |row: usize| -> f64 {
+        text_of.lines().nth(row + 1).and_then(|row| row.split(',').next()).and_then(|t| t.parse().ok()).expect("a time")
+    };
+    let delay = LATE as f64 * (time(1) - time(0));
+    for (servo, [kp, kd]) in servos.iter().zip([[120.0, 9.0], [40.0, 3.0]]) {
+        let value = |name: &str| servo[name][0].as_f64().expect("a number");
+        assert!((value("stiffness") / kp - 1.0).abs() < 0.05, "{servo}");
+        assert!((value("damping") / kd - 1.0).abs() < 0.05, "{servo}");
+        assert!((servo["delay"].as_f64().expect("a number") / delay - 1.0).abs() < 0.05, "{servo} {delay}");
+    }
+    let shown = text(&["identify", "double_pendulum", &log, "--columns"]);
+    assert!(shown.contains("target position θ*"), "{shown}");
+    // each simulator has its own words, and each parameter its place
+    for (simulator, words) in [
+        ("mjcf", ["<position name=\"joint1\" joint=\"joint1\" kp=", "position kv", "frictionloss"]),
+        (
+            "mjlab",
+            [
+                "BuiltinPositionActuatorCfg(target_names_expr=(r\"joint1\",), stiffness=",
+                "delay_min_lag=lag",
+                "frictionloss=",
+            ],
+        ),
+        ("isaac", ["DelayedPDActuatorCfg(", "viscous_friction={r\"joint1\": ", "min_delay=lag"]),
+        ("urdf", ["<joint name=\"joint1\" …> <dynamics", "none in URDF", "<dynamics friction>"]),
+    ] {
+        let told = text(&["identify", "double_pendulum", &log, "--write", simulator]);
+        assert!(words.iter().all(|word| told.contains(word)), "{simulator}: {told}");
+        assert!(told.contains("position controllers; targets act") && told.contains("where it went"), "{told}");
+    }
+    // without targets there are no gains to write
+    let way = path(&folder, "way.csv");
+    let told = text(&["identify", "double_pendulum", &way, "--write", "mjlab"]);
+    assert!(told.contains("BuiltinMotorActuatorCfg(") && told.contains("no targets logged"), "{told}");
+}

@@ -38,6 +38,9 @@ fn tables_in_tables_out() {
     assert_eq!(numbers(&found["reached"]), [1.0, 1.0]);
     let row: Vec<f64> = rows.lines().nth(1).expect("a row").split(',').map(|x| x.parse().expect("a number")).collect();
     assert_close(&common::rows(&found["theta"])[0], &row[..6], 0.0);
+    // as a spreadsheet with decimal commas writes them
+    let commas = file(&folder, "commas.csv", "qw;qx;qy;qz;x;y;z\n1;0;0;0;0,4;0,2;0,5\n0;1;0;0;0,3;-0,3;0,4\n");
+    assert_eq!(json(&["ik", "ur5", "--in", &commas])["theta"], found["theta"]);
     // one pose out of reach: its row is the best result, and the exit code reports it
     let goals = file(&folder, "far.csv", "x,y,z,qw,qx,qy,qz\n0.4,0.2,0.5,1,0,0,0\n3,0,0,1,0,0,0\n");
     let output = mozzi(&["ik", "ur5", "--in", &goals, "--starts", "3"]);

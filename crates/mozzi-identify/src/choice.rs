@@ -35,6 +35,9 @@ pub struct Choice {
     pub stiffness: bool,
     /// The ten parameters of a payload fixed to this frame.
     pub payload: Option<FrameId>,
+    /// What acts like an inertia or a damping of either sign: friction with memory, friction that falls with speed, a
+    /// delay. Predictions contain it, the robot has the part that it can have.
+    pub apparent: bool,
     /// Drive gains K, if `tau` holds motor currents i: τ = K i. They need a log with a known payload.
     pub gains: bool,
 }
@@ -59,18 +62,25 @@ impl Choice {
             offset: true,
             stiffness: false,
             payload: None,
+            apparent: true,
             gains: false,
         }
     }
 
     /// Friction and offsets alone: the robot's masses are trusted.
     pub fn only_friction() -> Self {
-        Choice { links: false, armature: false, ..Choice::all(Sensor::Motor) }
+        Choice { links: false, armature: false, apparent: false, ..Choice::all(Sensor::Motor) }
     }
 
     /// A payload at a frame, with friction and offsets.
     pub fn only_payload(frame: FrameId) -> Self {
         Choice { payload: Some(frame), ..Choice::only_friction() }
+    }
+
+    /// Whether inertias and dampings of either sign are told apart from the robot's: with trusted links they would hide
+    /// wrong masses, with unknown gains everything.
+    pub fn is_apparent(&self) -> bool {
+        self.apparent && self.links && !self.gains
     }
 
     /// The shape of dry friction.

@@ -1,6 +1,7 @@
 //! The linear equations A x = b of one sample: which unknowns there are, and their columns.
 
 use crate::choice::Choice;
+use crate::rotors::{rate, rates};
 use crate::signals::Samples;
 use crate::{Error, payload::Carried};
 use mozzi::quantities::{Query, Regressor, TipForces};
@@ -17,6 +18,12 @@ pub enum Kind {
     Viscous(usize),
     /// Coulomb friction: entry k of the parameters.
     Coulomb(usize),
+    /// Viscous friction of a rotor that several joints turn.
+    RotorViscous(usize),
+    /// Its Coulomb friction.
+    RotorCoulomb(usize),
+    /// What acts like the rotor inertia of entry k, behind the gears, where no rotor is felt: no part of the robot.
+    Apparent(usize),
     /// Stribeck friction of an independent joint.
     Stribeck(usize),
     /// Stiffness: entry k of the parameters.
@@ -32,14 +39,24 @@ pub enum Kind {
 impl Kind {
     /// Whether the parameter cannot be negative by itself.
     pub fn is_positive(self) -> bool {
-        matches!(self, Kind::Armature(_) | Kind::Viscous(_) | Kind::Coulomb(_) | Kind::Stiffness(_) | Kind::Gain(_))
+        matches!(
+            self,
+            Kind::Armature(_)
+                | Kind::Viscous(_)
+                | Kind::Coulomb(_)
+                | Kind::RotorViscous(_)
+                | Kind::RotorCoulomb(_)
+                | Kind::Stiffness(_)
+                | Kind::Gain(_)
+        )
     }
 }
 
 /// A parameter that is estimated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
-    /// As in [`parameter_names`](Model::parameter_names); `joint.stribeck`, `joint.offset`, `payload.m`, `joint.gain`.
+    /// As in [`parameter_names`](Model::parameter_names); `joint.stribeck`, `joint.offset`, `payload.m`, `joint.gain`,
+    /// `joint.apparent_inertia`.
     pub name: String,
     /// What it is.
     pub kind: Kind,
@@ -72,6 +89,8 @@ pub struct Columns<'m> {
     /// Coulomb friction that is not estimated, by place.
     fixed_coulomb: Vec<f64>,
     payload: Option<Carried>,
+    /// By rotor: its rate over each velocity.
+    pub(crate) rotors: Vec<Vec<f64>>,
     /// The row of each joint parameter, by place.
     rows: Vec<core::ops::Range<usize>>,
 }
@@ -123,6 +142,14 @@ impl<'m> Columns<'m> {
                 false => fixed.push((k, values[k])),
             }
         }
+        for (r, rotor) in model.description().rotors.iter().enumerate() {
+            if choice.viscous {
+                add(format!("{}.damping", rotor.name), Kind::RotorViscous(r), 0.0);
+            }
+            if choice.coulomb {
+                add(format!("{}.friction", rotor.name), Kind::RotorCoulomb(r), 0.0);
+            }
+        }
         let joints: Vec<&str> = model.joint_names().collect();
         if choice.stribeck.is_some() {
             joints.iter().enumerate().for_each(|(k, joint)| add(format!("{joint}.stribeck"), Kind::Stribeck(k), 0.0));
@@ -134,6 +161,12 @@ impl<'m> Columns<'m> {
         } else {
             // preloads, which an offset contains
             fixed.extend((0..places.len()).map(|place| first + OF_JOINT * place + 4).map(|k| (k, values[k])));
+        }
+        if choice.is_apparent() && !choice.armature {
+            let joints = model.joint_names().zip(0..);
+            joints.for_each(|(joint, place)| {
+                add(format!("{joint}.apparent_inertia"), Kind::Apparent(first + OF_JOINT * place), 0.0);
+            });
         }
         let payload = choice.payload.map(|frame| Carried::new(model, frame)).transpose()?;
         if payload.is_some() {
@@ -150,7 +183,7 @@ impl<'m> Columns<'m> {
             return Err(Error::NotExciting { reason: "no parameter is chosen to be estimated".into() });
         }
         let rows = places.iter().map(|place| place.velocities()).collect();
-        Ok(Columns { model, choice, unknowns, fixed, fixed_coulomb, payload, rows })
+        Ok(Columns { model, choice, unknowns, fixed, fixed_coulomb, payload, rotors: rates(model), rows })
     }
 
     /// The number of unknowns.
@@ -167,6 +200,29 @@ impl<'m> Columns<'m> {
         (0..self.count()).filter(|&k| is_first(&self.unknowns[k])).collect()
     }
 
+    /// The unit of unknown k.
+    pub fn unit(&self, k: usize) -> &'static str {
+        let Unknown { name, kind, .. } = &self.unknowns[k];
+        let joint = name.rsplit_once('.').map_or("", |(joint, _)| joint);
+        let joint = self.model.description().joints.iter().find(|one| one.name == joint);
+        let slides = joint.is_some_and(
+            |joint| matches!(joint.kind, mozzi::model::description::JointKind::Screw(A) if A.is_prismatic()),
+        );
+        match (kind, slides) {
+            (Kind::Link(k) | Kind::Payload(k), _) => ["kg", "kg m", "kg m²"][[0, 1, 1, 1, 2, 2, 2, 2, 2, 2][k % 10]],
+            (Kind::Armature(_) | Kind::Apparent(_), false) => "kg m²",
+            (Kind::Armature(_) | Kind::Apparent(_), true) => "kg",
+            (Kind::Viscous(_) | Kind::RotorViscous(_), false) => "N m s/rad",
+            (Kind::Viscous(_) | Kind::RotorViscous(_), true) => "N s/m",
+            (Kind::Stiffness(_), false) => "N m/rad",
+            (Kind::Stiffness(_), true) => "N/m",
+            (Kind::Coulomb(_) | Kind::RotorCoulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), false) => "N m",
+            (Kind::Coulomb(_) | Kind::RotorCoulomb(_) | Kind::Stribeck(_) | Kind::Offset(_), true) => "N",
+            (Kind::Gain(_), false) => "N m/A",
+            (Kind::Gain(_), true) => "N/A",
+        }
+    }
+
     /// The robot's own values.
     pub fn prior(&self) -> Vec<f64> {
         self.unknowns.iter().map(|unknown| unknown.prior).collect()
@@ -180,6 +236,11 @@ impl<'m> Columns<'m> {
     /// The first row of the joint whose parameters hold entry k.
     pub(crate) fn row_of(&self, k: usize) -> usize {
         self.rows[self.place_of(k)].start
+    }
+
+    /// Whether entry k belongs to one joint, not to a rotor that several joints turn.
+    pub(crate) fn is_of_joint(&self, k: usize) -> bool {
+        k < link_parameters(self.model) + OF_JOINT * self.rows.len()
     }
 
     /// The index of the joint whose parameters hold entry k.
@@ -275,11 +336,18 @@ impl<'c, 'm> Equations<'c, 'm> {
         let stribeck = of(stribeck, &|x| shape.stribeck(x));
         for (column, unknown) in columns.unknowns.iter().enumerate() {
             match unknown.kind {
-                Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Stiffness(k) => {
+                Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Stiffness(k) | Kind::Apparent(k) => {
                     (0..n).for_each(|j| A[j * P + column] = Y[j * p + k]);
                 }
                 Kind::Coulomb(k) => {
                     columns.rows[columns.place_of(k)].clone().for_each(|j| A[j * P + column] = coulomb[j]);
+                }
+                Kind::RotorViscous(r) | Kind::RotorCoulomb(r) => {
+                    let J = &columns.rotors[r];
+                    let omega = rate(J, dtheta);
+                    let is_viscous = matches!(unknown.kind, Kind::RotorViscous(_));
+                    let of_rotor = if is_viscous { omega } else { shape.coulomb(omega) };
+                    (0..n).for_each(|j| A[j * P + column] = J[j] * of_rotor);
                 }
                 Kind::Stribeck(place) => {
                     columns.rows[place].clone().for_each(|j| A[j * P + column] = stribeck[j]);

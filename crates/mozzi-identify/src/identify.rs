@@ -3,6 +3,7 @@
 use crate::compress::{Compressed, Evidence, PARTS};
 use crate::estimate::least_squares::Decomposition;
 use crate::judgement::suspicion;
+use crate::predict::predict_some;
 use crate::setup::{Estimates, Limits, Setup, without_constraints};
 use crate::signals::{Filter, Samples, prepare};
 use crate::{Choice, Error, Finding, Kind, Level, Log};
@@ -57,6 +58,8 @@ pub struct Errors {
     pub least_squares: Vec<f64>,
     /// Of bodies that exist.
     pub consistent: Vec<f64>,
+    /// Of the robot alone, as files can hold it, with offsets: without what is apparent.
+    pub written: Vec<f64>,
 }
 
 impl Errors {
@@ -71,6 +74,9 @@ impl Errors {
         (used.iter().map(|e| e * e).sum::<f64>() / used.len().max(1) as f64).sqrt()
     }
 }
+
+/// Blocks of time that are left out in turn.
+const BLOCKS: usize = 5;
 
 /// An identified robot.
 #[derive(Debug)]
@@ -89,6 +95,8 @@ pub struct Identification<'m> {
     pub left_out: Option<Errors>,
     /// Errors on the part of the logs that `tenths` holds out.
     pub held_out: Option<Errors>,
+    /// The fits that predicted the blocks.
+    left_out_fits: Vec<Vec<f64>>,
     /// What was noticed.
     pub findings: Vec<Finding>,
     tenths: usize,
@@ -162,12 +170,15 @@ pub fn identify<'m>(
         estimates,
         fitted,
         left_out: None,
+        left_out_fits: Vec::new(),
         held_out,
         findings,
         tenths,
     };
     if !stop() {
-        found.left_out = found.cross_validate(5, stop).ok();
+        if let Ok((errors, fits)) = cross_validated(&found.setup, &found.logs, tenths, BLOCKS, stop) {
+            (found.left_out, found.left_out_fits) = (Some(errors), fits);
+        }
     }
     Ok(found)
 }
@@ -178,7 +189,23 @@ impl<'m> Identification<'m> {
     /// # Errors
     /// [`Error::NotExciting`] if the other blocks do not determine the unknowns.
     pub fn cross_validate(&self, blocks: usize, stop: &dyn Fn() -> bool) -> Result<Errors, Error> {
-        cross_validated(&self.setup, &self.logs, self.tenths, blocks, stop)
+        Ok(cross_validated(&self.setup, &self.logs, self.tenths, blocks, stop)?.0)
+    }
+
+    /// The forces of a log's samples, N × n, each predicted by a fit without its block of time.
+    ///
+    /// # Errors
+    /// [`Error::Model`].
+    pub fn predicted_unseen(&self, samples: &Samples) -> Result<Vec<f64>, Error> {
+        let mut all = Vec::new();
+        let whole = self.estimates.consistent.predicting();
+        for part in 0..PARTS {
+            let range = part * samples.count() / PARTS..(part + 1) * samples.count() / PARTS;
+            let block = part * self.left_out_fits.len() / self.tenths;
+            let x = self.left_out_fits.get(block).filter(|_| part < self.tenths).unwrap_or(&whole);
+            all.extend(predict_some(&self.setup.columns, x, samples, range)?);
+        }
+        Ok(all)
     }
 
     /// The first part of each log that is fitted, in tenths.
@@ -227,28 +254,31 @@ fn demote(findings: &mut [Finding]) {
     findings.iter_mut().for_each(|finding| finding.level = finding.level.min(Level::Warning));
 }
 
-/// Errors on blocks in time, each predicted by fits on the other blocks, pooled.
+/// Errors on blocks in time, each predicted by fits on the other blocks, pooled; and those fits.
 pub(crate) fn cross_validated(
     setup: &Setup<'_>,
     logs: &[Compressed],
     tenths: usize,
     blocks: usize,
     stop: &dyn Fn() -> bool,
-) -> Result<Errors, Error> {
+) -> Result<(Errors, Vec<Vec<f64>>), Error> {
     let P = setup.columns.count();
+    let blocks = blocks.min(tenths);
     let block = |part: usize| part * blocks / tenths;
-    let mut pooled: Option<Errors> = None;
-    for left_out in 0..blocks.min(tenths) {
+    let (mut pooled, mut fits): (Option<Errors>, _) = (None, Vec::new());
+    for left_out in 0..blocks {
         let others = Evidence::new(&setup.pattern, P, logs, |_, part| part < tenths && block(part) != left_out);
         let own = Evidence::new(&setup.pattern, P, logs, |_, part| part < tenths && block(part) == left_out);
         let estimates = setup.fit(&others, stop)?;
         let of_block = errors(setup, &others, &estimates, &own)?;
+        fits.push(estimates.consistent.predicting());
         pooled = Some(match pooled {
             None => of_block,
             Some(all) => all.pooled(&of_block, left_out as f64),
         });
     }
-    pooled.ok_or_else(|| Error::NotExciting { reason: "there are no blocks".into() })
+    let errors = pooled.ok_or_else(|| Error::NotExciting { reason: "there are no blocks".into() })?;
+    Ok((errors, fits))
 }
 
 impl Errors {
@@ -263,6 +293,7 @@ impl Errors {
             friction: mean(&self.friction, &other.friction),
             least_squares: mean(&self.least_squares, &other.least_squares),
             consistent: mean(&self.consistent, &other.consistent),
+            written: mean(&self.written, &other.written),
         }
     }
 }
@@ -275,7 +306,8 @@ fn errors(setup: &Setup<'_>, fitted: &Evidence, estimates: &Estimates, on: &Evid
         robot: on.rmse(&prior),
         friction: on.rmse(&friction_alone(setup, fitted, &estimates.least_squares.sigma)),
         least_squares: on.rmse(&estimates.least_squares.x),
-        consistent: on.rmse(&estimates.consistent.x),
+        consistent: on.rmse(&estimates.consistent.predicting()),
+        written: on.rmse(&estimates.consistent.x),
     })
 }
 
@@ -283,7 +315,10 @@ fn errors(setup: &Setup<'_>, fitted: &Evidence, estimates: &Estimates, on: &Evid
 fn friction_alone(setup: &Setup<'_>, evidence: &Evidence, sigma: &[f64]) -> Vec<f64> {
     let mut x = setup.columns.prior();
     let is_free = |k: &usize| {
-        !matches!(setup.columns.unknowns[*k].kind, Kind::Link(_) | Kind::Payload(_) | Kind::Armature(_) | Kind::Gain(_))
+        !matches!(
+            setup.columns.unknowns[*k].kind,
+            Kind::Link(_) | Kind::Payload(_) | Kind::Armature(_) | Kind::Apparent(_) | Kind::Gain(_)
+        )
     };
     let free: Vec<usize> = (0..x.len()).filter(is_free).collect();
     if free.is_empty() {
@@ -306,7 +341,7 @@ fn friction_alone(setup: &Setup<'_>, evidence: &Evidence, sigma: &[f64]) -> Vec<
 
 /// The equations with Huber's weights: residuals above 1.345 σ count by their size alone.
 fn reweighted(setup: &Setup<'_>, samples: &[Samples], estimates: &Estimates) -> Result<Vec<Compressed>, Error> {
-    let (x, sigma, P) = (&estimates.consistent.x, &estimates.least_squares.sigma, setup.columns.count());
+    let (x, sigma, P) = (&estimates.consistent.predicting(), &estimates.least_squares.sigma, setup.columns.count());
     let weight = |_: usize, A: &[f64], b: &[f64], w: &mut [f64]| {
         for (j, w) in w.iter_mut().enumerate() {
             let residual = A[j * P..][..P].iter().zip(x).map(|(a, x)| a * x).sum::<f64>() - b[j];

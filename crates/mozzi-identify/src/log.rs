@@ -20,6 +20,8 @@ pub struct Log {
     pub ddtheta: Option<Vec<f64>>,
     /// Measured forces τ, N × n: N m or N; or motor currents, if drive gains are estimated.
     pub tau: Vec<f64>,
+    /// Target positions θ* of position controllers, N × n, of joints of one axis.
+    pub target: Option<Vec<f64>>,
     /// Measured wrenches that frames apply to the environment, N × 6 each, in the frame's coordinates, (m, f).
     pub wrenches: Vec<(FrameId, Vec<f64>)>,
     /// A known payload that was fixed to a frame, its inertia in the frame's coordinates.
@@ -59,6 +61,7 @@ impl Log {
         let mut all = vec![("theta", self.theta.as_slice(), model.nq()), ("tau", self.tau.as_slice(), model.n())];
         all.extend(self.dtheta.as_deref().map(|table| ("dtheta", table, model.n())));
         all.extend(self.ddtheta.as_deref().map(|table| ("ddtheta", table, model.n())));
+        all.extend(self.target.as_deref().map(|table| ("target", table, model.n())));
         all.extend(self.wrenches.iter().map(|(_, table)| ("wrench", table.as_slice(), 6)));
         all
     }

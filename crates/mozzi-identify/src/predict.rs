@@ -9,7 +9,7 @@ use mozzi::quantities::{InverseDynamics, Query};
 use mozzi::{Environment, Model, Wrench, fast};
 
 /// The robot's [`parameters`](Model::parameters) with the unknowns in their places. A payload is added to the link that
-/// carries it; offsets, Stribeck friction and drive gains are not among them.
+/// carries it; offsets, Stribeck friction, apparent inertia and drive gains are not among them.
 ///
 /// # Errors
 /// [`Error::Model`].
@@ -22,7 +22,8 @@ pub fn parameters(columns: &Columns<'_>, x: &[f64]) -> Result<Vec<f64>, Error> {
                 pi[k] = value
             }
             Kind::Payload(k) => payload[k] = value,
-            Kind::Stribeck(_) | Kind::Offset(_) | Kind::Gain(_) => {}
+            Kind::Stribeck(_) | Kind::Offset(_) | Kind::Gain(_) | Kind::Apparent(_) => {}
+            Kind::RotorViscous(_) | Kind::RotorCoulomb(_) => {}
         }
     }
     if let Some(frame) = columns.choice.payload {
@@ -44,6 +45,19 @@ pub fn identified(columns: &Columns<'_>, x: &[f64]) -> Result<Model, Error> {
 /// # Errors
 /// [`Error::Model`].
 pub fn predict(columns: &Columns<'_>, x: &[f64], samples: &Samples) -> Result<Vec<f64>, Error> {
+    predict_some(columns, x, samples, 0..samples.count())
+}
+
+/// Predicted forces of a range of samples.
+///
+/// # Errors
+/// [`Error::Model`].
+pub(crate) fn predict_some(
+    columns: &Columns<'_>,
+    x: &[f64],
+    samples: &Samples,
+    range: core::ops::Range<usize>,
+) -> Result<Vec<f64>, Error> {
     let model = columns.model;
     let (n, nq) = (model.n(), model.nq());
     let mut pi = parameters(columns, x)?;
@@ -64,21 +78,25 @@ pub fn predict(columns: &Columns<'_>, x: &[f64], samples: &Samples) -> Result<Ve
         // an offset contains the spring's preload
         names.iter().zip(&mut pi).filter(|(name, _)| name.ends_with(".preload")).for_each(|(_, value)| *value = 0.0);
     }
-    let robot = model.with_parameters(&pi);
+    let mut of_rotors = vec![[0.0; 2]; columns.rotors.len()];
     let (mut offset, mut stribeck, mut gain) = (vec![0.0; n], vec![0.0; n], vec![1.0; n]);
     for (unknown, &value) in columns.unknowns.iter().zip(x) {
         match unknown.kind {
             Kind::Offset(j) => offset[j] = value,
             Kind::Gain(j) => gain[j] = value,
             Kind::Stribeck(place) => places[place].velocities().for_each(|j| stribeck[j] = value),
+            Kind::Apparent(k) => pi[k] += value,
+            Kind::RotorViscous(r) => of_rotors[r][0] = value,
+            Kind::RotorCoulomb(r) => of_rotors[r][1] = value,
             _ => {}
         }
     }
+    let robot = model.with_parameters(&pi);
     let shape = columns.choice.shape();
     let (query, mut workspace) = (Query::from(InverseDynamics), fast::Workspace::new(&robot));
-    let mut all = vec![0.0; samples.count() * n];
+    let mut all = vec![0.0; range.len() * n];
     let mut applied = Vec::new();
-    for (k, tau) in all.chunks_mut(n).enumerate() {
+    for (k, tau) in range.zip(all.chunks_mut(n)) {
         let (theta, row) = (&samples.theta[k * nq..][..nq], k * n..(k + 1) * n);
         let (dtheta, ddtheta) = (&samples.dtheta[row.clone()], &samples.ddtheta[row]);
         applied.clear();
@@ -90,6 +108,11 @@ pub fn predict(columns: &Columns<'_>, x: &[f64], samples: &Samples) -> Result<Ve
         );
         let environment = Environment { applied: &applied, ..robot.environment() };
         fast::evaluate(&query, &robot, &[theta, dtheta, ddtheta], &environment, &mut workspace, &mut [tau]);
+        for (J, [d, mu]) in columns.rotors.iter().zip(&of_rotors) {
+            let omega = crate::rotors::rate(J, dtheta);
+            let force = d * omega + mu * shape.coulomb(omega);
+            tau.iter_mut().zip(J).for_each(|(tau, J)| *tau += J * force);
+        }
         for j in 0..n {
             let of = |given: &Option<Vec<f64>>, of_one: f64| given.as_ref().map_or(of_one, |table| table[k * n + j]);
             let coulomb = of(&samples.coulomb, shape.coulomb(dtheta[j]));

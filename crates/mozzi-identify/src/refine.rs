@@ -73,6 +73,9 @@ pub fn refine(
             "links, friction, armature, springs and offsets",
         ));
     }
+    if !columns.rotors.is_empty() {
+        return Err(wrong("a rotor that several joints turn", "rotors of one joint each"));
+    }
     let mut windows = Vec::new();
     for samples in &found.samples {
         let length = (options.window * samples.rate).round() as usize;
@@ -87,10 +90,13 @@ pub fn refine(
     let windows: Vec<Window> = windows.into_iter().step_by(step).collect();
 
     let data = found.evidence().weighted(&found.estimates.least_squares.sigma);
-    let newton = Newton::new(&found.setup.problem, &data);
+    let problem = found.setup.problem.of_robot();
+    let newton = Newton::new(&problem, &data);
     let gamma = found.setup.problem.gamma;
     let singular = || Error::NotExciting { reason: "the equations are singular".into() };
-    let start = newton.whitened(&found.estimates.consistent.x).ok_or_else(singular)?;
+    let mut inside = found.estimates.consistent.x.clone();
+    found.setup.problem.split.iter().for_each(|&k| inside[k] = inside[k].max(1e-6));
+    let start = newton.whitened(&inside).ok_or_else(singular)?;
     let S = newton.directions(&start, gamma)?;
     let mut rollouts = Rollouts { found, windows, window: options.window, sizes: None };
     let before = rollouts.errors(&found.estimates.consistent.x)?;
@@ -221,7 +227,8 @@ impl Rollouts<'_, '_> {
         let gradient = columns.unknowns.iter().map(|unknown| match unknown.kind {
             Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Coulomb(k) | Kind::Stiffness(k) => by_pi[k],
             Kind::Offset(j) => by_offset[j],
-            Kind::Stribeck(_) | Kind::Payload(_) | Kind::Gain(_) => 0.0,
+            Kind::RotorViscous(_) | Kind::RotorCoulomb(_) => 0.0,
+            Kind::Apparent(_) | Kind::Stribeck(_) | Kind::Payload(_) | Kind::Gain(_) => 0.0,
         });
         let rms = squares.map(|list| list.into_iter().map(|sum: f64| (sum / count).sqrt()).collect());
         Ok(Compared { loss, gradient: gradient.collect(), errors: rms })
@@ -257,7 +264,7 @@ mod tests {
         let sizes = Some([vec![0.1, 0.2], vec![1.0, 2.0]]);
         let rollouts = Rollouts { found: &found, windows, window: 0.1, sizes };
         let mut x = found.estimates.consistent.x.clone();
-        found.setup.problem.positive.iter().for_each(|&k| x[k] = x[k].max(0.05));
+        found.setup.problem.of_robot().positive.iter().for_each(|&k| x[k] = x[k].max(0.05));
         let (_, gradient) = rollouts.loss(&x).expect("rollouts");
         let scale = gradient.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
         for k in 0..x.len() {

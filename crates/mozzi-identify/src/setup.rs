@@ -77,9 +77,20 @@ impl<'m> Setup<'m> {
             }
             bodies.push((first, prior, if is_payload { GUESS } else { 1.0 }));
         }
-        let positive = (0..P).filter(|&k| columns.unknowns[k].kind.is_positive()).collect();
         let bounds = bounds(&columns, limits)?;
-        let problem = Problem { bodies, positive, bounds, gamma, start };
+        // of either sign where some motion tells them from the links, and no bound is given
+        let is_base = |k: usize| base.columns.contains(&k);
+        let is_bound = |k: usize| bounds.iter().any(|bound| bound.terms.iter().any(|&(of, _)| of == k));
+        let has_place = |k: usize| match columns.unknowns[k].kind {
+            Kind::Armature(of) => columns.is_of_joint(of),
+            kind => matches!(kind, Kind::Viscous(_)),
+        };
+        let is_split = |k: &usize| columns.choice.is_apparent() && has_place(*k) && is_base(*k) && !is_bound(*k);
+        let (split, positive) =
+            (0..P).filter(|&k| columns.unknowns[k].kind.is_positive()).partition::<Vec<_>, _>(is_split);
+        let is_apparent = |k: usize| matches!(columns.unknowns[k].kind, Kind::Apparent(_));
+        let pinned = (0..P).filter(|&k| is_apparent(k) && !is_base(k)).collect();
+        let problem = Problem { bodies, positive, split, pinned, bounds, gamma, start };
         Ok(Setup { columns, pattern, base, problem, repaired, total_mass: limits.total_mass })
     }
 
@@ -100,7 +111,35 @@ impl<'m> Setup<'m> {
         let mut consistent = self.problem.solve(&data, stop)?;
         let independent = (evidence.samples() as f64 * evidence.independent).max(1.0).sqrt();
         consistent.deviations.iter_mut().for_each(|d| *d /= independent);
+        self.split(evidence, &mut consistent);
         Ok(Estimates { least_squares, consistent })
+    }
+}
+
+impl Setup<'_> {
+    /// Leaves the positive part of armature and damping to the robot. Where damping is negative, the robot's Coulomb
+    /// friction is the best without it: μ + d ⟨θ̇ c⟩/⟨c²⟩ with c = tanh(θ̇/w).
+    fn split(&self, evidence: &Evidence, optimum: &mut Optimum) {
+        let columns = &self.columns;
+        for k in (0..columns.count()).filter(|&k| matches!(columns.unknowns[k].kind, Kind::Apparent(_))) {
+            optimum.apparent[k] = std::mem::take(&mut optimum.x[k]);
+        }
+        for &k in self.problem.split.iter().filter(|&&k| optimum.x[k] < 0.0).collect::<Vec<_>>() {
+            let d = std::mem::take(&mut optimum.x[k]);
+            optimum.apparent[k] = d;
+            let Kind::Viscous(of) = columns.unknowns[k].kind else { continue };
+            let Some(c) = columns.index(Kind::Coulomb(of + 1)) else { continue };
+            let row = columns.row_of(of);
+            let place = |k: usize| self.pattern.0[row].iter().position(|&column| column == k);
+            let (Some(v), Some(w)) = (place(k), place(c)) else { continue };
+            let R = &evidence.forces[row].R;
+            let square = R.column(w).norm_squared();
+            if square > 0.0 {
+                let mu = (optimum.x[c] + d * R.column(v).dot(&R.column(w)) / square).max(0.0);
+                optimum.apparent[c] = optimum.x[c] - mu;
+                optimum.x[c] = mu;
+            }
+        }
     }
 }
 

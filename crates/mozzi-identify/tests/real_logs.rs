@@ -30,7 +30,7 @@ fn worst(list: &[f64]) -> f64 {
 #[test]
 fn the_consistent_estimate_predicts_what_least_squares_predicts() {
     for case in cases() {
-        for (sensor, is_asserted) in [(Sensor::Link, true), (Sensor::Motor, case.name == "UR10")] {
+        for sensor in [Sensor::Link, Sensor::Motor] {
             let found = identify(&case.model, std::slice::from_ref(&case.log), &options(&case, sensor, 7), &|| false)
                 .expect("an identification");
             eprintln!(
@@ -61,21 +61,23 @@ fn the_consistent_estimate_predicts_what_least_squares_predicts() {
                 .expect("an identification");
             let last = |errors: &Errors| sum(&errors.consistent) / sum(&errors.least_squares);
             let of_few = few.held_out.as_ref().map_or(f64::NAN, last);
+            show("five blocks, written", &left_out.written);
             eprintln!("with 20 %: {of_few:.3}; prior repaired: {:?}", few.setup.repaired);
-            if is_asserted {
-                assert!(ratio < 1.03, "{}: the sum is {ratio} times that of least squares", case.name);
-                assert!(worst(&ratios(&held_out)) < 1.15, "{}: {:?}", case.name, ratios(&held_out));
-                assert!(worst(&ratios(&left_out)) < 1.10, "{}: {:?}", case.name, ratios(&left_out));
-                assert!(of_few < 0.60, "{}: {of_few}", case.name);
+            // within 3 % of least squares in the sum, 15 % at any joint; fitted to little, 40 % better
+            for (what, errors) in [("30 % held out", &held_out), ("five blocks", &left_out)] {
+                let ratio = sum(&errors.consistent) / sum(&errors.least_squares);
+                assert!(ratio < 1.03, "{}, {what}: the sum is {ratio} times that of least squares", case.name);
+                assert!(worst(&ratios(errors)) < 1.15, "{}, {what}: {:?}", case.name, ratios(errors));
             }
+            assert!(of_few < 0.60, "{}: {of_few}", case.name);
             let (good, bad) = (of_states(&found, &found.estimates.consistent), of_states_ls(&found));
-            eprintln!("M not positive definite: consistent {good} of 200, least squares {bad} of 200");
+            eprintln!("M not positive definite: consistent {good} of 1000, least squares {bad} of 1000");
             assert_eq!(good, 0);
         }
     }
 }
 
-/// In how many of 200 random states M has an eigenvalue that is not positive.
+/// In how many of 1000 random states M has an eigenvalue that is not positive.
 fn of_states(found: &mozzi_identify::Identification<'_>, optimum: &Optimum) -> usize {
     not_positive(found, &optimum.x)
 }
@@ -91,5 +93,5 @@ fn not_positive(found: &mozzi_identify::Identification<'_>, x: &[f64]) -> usize 
         let M = robot.mass_matrix(&random.vector(robot.n(), 2.0)).expect("lengths");
         M.symmetric_eigenvalues().min() <= 0.0
     };
-    (0..200).filter(is_bad).count()
+    (0..1000).filter(is_bad).count()
 }

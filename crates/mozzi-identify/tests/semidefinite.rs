@@ -32,7 +32,7 @@ fn problem(robot: &str, gamma: f64) -> (Problem, Triangle) {
     let evidence = Evidence::new(&setup.pattern, setup.columns.count(), &compressed, |_, _| true);
     let sigma = vec![0.5; model.n()];
     setup.problem.gamma = gamma;
-    (setup.problem, evidence.weighted(&sigma))
+    (setup.problem.of_robot(), evidence.weighted(&sigma))
 }
 
 #[test]
@@ -80,7 +80,8 @@ fn newton_finds_the_optimum_of_the_semidefinite_program() {
         let bodies = bodies.collect();
         let positive: Vec<usize> = list(&one["positive"]).into_iter().map(|k| k as usize).collect();
         let gamma = one["gamma"].as_f64().expect("a number");
-        let problem = Problem { bodies, positive, bounds: Vec::new(), gamma, start: vec![0.0; P] };
+        let (split, pinned, bounds, start) = (Vec::new(), Vec::new(), Vec::new(), vec![0.0; P]);
+        let problem = Problem { bodies, positive, split, pinned, bounds, gamma, start };
         let found = problem.solve(&data, &|| false).expect("an optimum");
         let expected = list(&one["optimum"]);
         let difference = nalgebra::DVector::from_iterator(P, found.x.iter().zip(&expected).map(|(a, b)| a - b));

@@ -301,3 +301,38 @@ fn rollouts_refine_what_forces_left_wrong() {
     };
     assert!(far(&refined.x) < 0.3 * far(&found.estimates.consistent.x));
 }
+
+/// A wrist whose last motor turns with the joint before it, too: its rotor's friction and inertia act on both.
+#[test]
+fn the_rotor_of_a_coupled_wrist_is_identified() {
+    use mozzi::model::description::{Gear, Rotor};
+    let mut description = mozzi_urdf::open("ur5").expect("embedded").description;
+    let joints: Vec<String> = description.joints.iter().map(|joint| joint.name.clone()).collect();
+    let of = |name: &str| joints.iter().find(|joint| joint.contains(name)).expect("a joint").clone();
+    let gears = [of("wrist_2"), of("wrist_3")].map(|joint| Gear { joint, ratio: 1.0 }).to_vec();
+    let alone = description.clone().build().expect("sound");
+    description.rotors.push(Rotor { name: "motor6".into(), armature: 0.0, gears });
+    let model = description.build().expect("sound");
+    let choice = Choice::all(Sensor::Motor);
+    let columns = Columns::new(&model, choice.clone()).expect("columns");
+    let mut x = columns.prior();
+    let index = |name: &str| columns.unknowns.iter().position(|unknown| unknown.name == name).expect(name);
+    let truth = [("motor6.armature", 0.15), ("motor6.damping", 0.8), ("motor6.friction", 1.2)];
+    truth.iter().for_each(|(name, value)| x[index(name)] = *value);
+    let log = motion(&model, 10.0, 100.0, 1.0, 4);
+    let log = with_forces(&log, &model, &choice, &x, &[0.05; 6], &mut Random(2));
+    let options = Options { choice: choice.clone(), filter: UNFILTERED, ..Options::default() };
+    let found = identify(&model, std::slice::from_ref(&log), &options, &|| false).expect("an identification");
+    for (name, value) in truth {
+        let identified = found.estimates.consistent.x[index(name)];
+        eprintln!("{name}: {identified:.4} of {value}");
+        assert!((identified / value - 1.0).abs() < 0.05, "{name}: {identified} of {value}");
+    }
+    // the second way: inverse dynamics instead of the equations; and the robot without the rotor explains less
+    let rms = |tau: &[f64]| (tau.iter().map(|x| x * x).sum::<f64>() / tau.len() as f64).sqrt();
+    let predicted = predict(&found.setup.columns, &found.estimates.consistent.predicting(), &found.samples[0]);
+    let rest: Vec<f64> = predicted.expect("forces").iter().zip(&found.samples[0].tau).map(|(a, b)| a - b).collect();
+    assert!(rms(&rest) < 0.06, "{}", rms(&rest));
+    let without = identify(&alone, &[log], &options, &|| false).expect("an identification");
+    assert!(without.fitted.consistent[4] > 5.0 * found.fitted.consistent[4]);
+}

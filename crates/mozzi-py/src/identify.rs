@@ -20,7 +20,7 @@ fn of_identification(error: Error) -> PyErr {
     }
 }
 
-/// A log from a mapping of arrays: t, theta, tau, and dtheta, ddtheta, `wrench` of the end effector or `wrench_FRAME`
+/// A log from a mapping of arrays: t, theta, tau, and dtheta, ddtheta, target, `wrench` of the end effector or `wrench_FRAME`
 /// if they are there. Of a floating base, tau may have the joints' columns alone.
 fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> {
     let need = |name: &str| {
@@ -36,6 +36,11 @@ fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> 
             false => Ok(None),
         }
     };
+    let target = optional("target")?;
+    if target.is_some() && !model.configuration_space().is_flat() {
+        let expected = "expected joints of one axis on a fixed base";
+        return Err(PyValueError::new_err(format!("log {number} has a 'target', {expected}")));
+    }
     let mut wrenches = Vec::new();
     for name in given.call_method0("keys")?.try_iter()? {
         let name: String = name?.extract()?;
@@ -63,6 +68,7 @@ fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> 
         dtheta: optional("dtheta")?,
         ddtheta: optional("ddtheta")?,
         tau,
+        target,
         wrenches,
         ..Log::default()
     })
@@ -162,7 +168,11 @@ pub fn _identify<'py>(
         let html = mozzi_report::fit_html(&found, &judged, &validations);
         let mut series = Vec::new();
         for samples in &found.samples {
-            series.push((samples.t.clone(), samples.tau.clone(), predict(&found.setup.columns, x, samples)?));
+            series.push((
+                samples.t.clone(),
+                samples.tau.clone(),
+                predict(&found.setup.columns, &found.estimates.consistent.predicting(), samples)?,
+            ));
         }
         Ok((json, html, description, series))
     };

@@ -133,3 +133,21 @@ def test_a_floating_base_is_identified_by_its_contact_wrench():
     assert masses == pytest.approx(robot.mass + 0.5, rel=0.01)
     with pytest.raises(ValueError, match="wrench_toe|toe"):
         mozzi.identify(robot, {**log, "wrench_toe": F})
+
+
+def test_position_controllers():
+    """Targets that are made from the torques of a PD law, logged five rows before they act."""
+    robot = mozzi.models.double_pendulum()
+    motion = mozzi.excite(robot, 5.0, harmonics=3, velocity=3.0, acceleration=10.0)
+    tau = robot.inverse_dynamics(motion.theta, motion.dtheta, motion.ddtheta)
+    kp, kd, late = np.array([120.0, 40.0]), np.array([9.0, 3.0]), 5
+    target = motion.theta + (tau + kd * motion.dtheta) / kp
+    rows = slice(0, -late)
+    log = {"t": motion.t[rows], "theta": motion.theta[rows], "dtheta": motion.dtheta[rows], "tau": tau[rows]}
+    found = mozzi.identify(robot, {**log, "target": target[late:]})
+    delay = late * (motion.t[1] - motion.t[0])
+    for law, gains in zip(found.servos.values(), zip(kp, kd)):
+        np.testing.assert_allclose([law["stiffness"], law["damping"]], gains, rtol=0.05)
+        np.testing.assert_allclose(law["delay"], delay, rtol=0.05)
+    assert len(found.servos) == 2
+    assert mozzi.identify(robot, log).servos == {}

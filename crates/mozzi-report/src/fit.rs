@@ -3,7 +3,7 @@
 use crate::figure::{Curve, Figure, Panel, Stroke};
 use mozzi_identify::estimate::pseudo_inertia::pseudo_inertia;
 use mozzi_identify::judgement::Judgement;
-use mozzi_identify::{Errors, Finding, Identification, Kind, Level};
+use mozzi_identify::{Errors, Finding, Identification, Level};
 use std::fmt::Write as _;
 
 /// Points of a curve, at most.
@@ -180,17 +180,11 @@ fn parameters(found: &Identification<'_>, judged: &Judgement) -> String {
     let mut rows =
         vec![["parameter", "before", "identified", "deviation", "from the prior"].map(str::to_string).to_vec()];
     for (k, unknown) in found.setup.columns.unknowns.iter().enumerate() {
-        let unit = match unknown.kind {
-            Kind::Link(k) if k % 10 == 0 => " [kg]",
-            Kind::Link(k) if k % 10 < 4 => " [kg m]",
-            Kind::Link(_) | Kind::Armature(_) => " [kg m²]",
-            _ => "",
-        };
         rows.push(vec![
-            format!("{}{unit}", unknown.name),
+            format!("{} [{}]", unknown.name, found.setup.columns.unit(k)),
             format!("{:.5}", unknown.prior),
             format!("{:.5}", optimum.x[k]),
-            format!("{:.5}", optimum.deviations[k]),
+            judged.standings[k].text(),
             format!("{:.0} %", 100.0 * optimum.prior_share[k]),
         ]);
     }

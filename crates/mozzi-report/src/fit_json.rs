@@ -14,9 +14,11 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
         .iter()
         .enumerate()
         .map(|(k, unknown)| {
+            let standing = &judged.standings[k];
             json!({
-                "name": unknown.name, "before": unknown.prior, "value": optimum.x[k],
-                "deviation": optimum.deviations[k], "prior_share": optimum.prior_share[k],
+                "name": unknown.name, "unit": setup.columns.unit(k), "before": unknown.prior, "value": optimum.x[k],
+                "deviation": standing.deviation, "only": standing.only, "prior_share": optimum.prior_share[k],
+                "apparent": optimum.apparent[k],
             })
         })
         .collect();
@@ -47,6 +49,16 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
             })
         })
         .collect();
+    let servos: Vec<Value> = judged
+        .servos
+        .iter()
+        .map(|one| {
+            json!({
+                "joint": one.joint, "stiffness": one.stiffness, "damping": one.damping, "delay": one.delay,
+                "bias": one.bias, "nrms": one.nrms,
+            })
+        })
+        .collect();
     let verdict = Verdict::new(found, validations.iter().map(|(_, errors)| errors));
     let validations: Vec<Value> =
         validations.iter().map(|(file, errors)| json!({ "log": file, "errors": of_errors(errors) })).collect();
@@ -62,6 +74,7 @@ pub fn fit_json(found: &Identification<'_>, judged: &Judgement, validations: &[(
         "left_out": found.left_out.as_ref().map(of_errors),
         "held_out": found.held_out.as_ref().map(of_errors),
         "validations": validations,
+        "servos": servos,
         "residuals": residuals,
         "findings": findings,
     })
@@ -82,6 +95,7 @@ fn of_errors(errors: &Errors) -> Value {
     json!({
         "force": errors.force, "robot": errors.robot, "friction": errors.friction,
         "least_squares": errors.least_squares, "consistent": errors.consistent,
+        "written": errors.written, "nrms_written": errors.normalized(&errors.written),
         "nrms": errors.normalized(&errors.consistent),
     })
 }

@@ -15,6 +15,7 @@ const IMPORTED: [(&str, &str); 29] = [
     ("docs/cpp.md", "manual/cpp.md"),
     ("docs/derive.md", "manual/derive.md"),
     ("docs/identify.md", "manual/identify.md"),
+    ("docs/sim-to-real.md", "manual/sim-to-real.md"),
     ("docs/gradients.md", "manual/gradients.md"),
     ("docs/jax.md", "manual/jax.md"),
     ("docs/pytorch.md", "manual/pytorch.md"),

@@ -48,6 +48,9 @@ pub const GROUPS: [&str; INPUTS.len()] = {
     names
 };
 
+/// The table of target positions.
+pub const TARGET: &str = "target";
+
 /// A column and the factor that makes it SI.
 pub type Column = (usize, f64);
 
@@ -99,6 +102,8 @@ pub struct Request<'r> {
     pub topic: Option<&'r str>,
     /// Whether the command has `--order` and `--lock`.
     pub has_flags: bool,
+    /// Whether target positions are read beside measured ones.
+    pub targets: bool,
 }
 
 /// The use of a column.
@@ -108,6 +113,8 @@ pub enum Role {
     /// The group and the entry.
     Value(usize, usize),
     Wrench,
+    /// The target of a measured position, by its entry.
+    Target(usize),
     /// Why it is not used.
     Unused(&'static str),
 }
@@ -119,6 +126,7 @@ pub struct Recognised {
     /// As [`GROUPS`]. An entry is None if its column is missing: it is then 0.
     groups: [Option<Vec<Option<Column>>>; GROUPS.len()],
     wrenches: Vec<wrench::Wrench>,
+    targets: Option<Vec<Option<Column>>>,
     /// What was converted, preferred or left out.
     pub notes: Vec<String>,
     /// Each column with its meaning.
@@ -136,7 +144,8 @@ impl Recognised {
         let mut notes = assignment.notes;
         let rows = show::rows(header, model, &roles, &assignment.groups, time);
         notes.extend(show::unused(place, header, &roles));
-        Ok(Recognised { time, groups: assignment.groups, wrenches, notes, rows })
+        let (groups, targets) = (assignment.groups, assignment.targets);
+        Ok(Recognised { time, groups, wrenches, targets, notes, rows })
     }
 
     /// The contents of the columns; `number` takes a row and a column.
@@ -154,7 +163,8 @@ impl Recognised {
         let groups = groups.filter_map(|(name, columns)| Some((name.to_string(), table(columns.as_ref()?))));
         let of_wrench = |columns: &[usize; 6]| table(&columns.map(|column| Some((column, 1.0))));
         let wrenches = self.wrenches.iter().map(|(name, columns)| (name.clone(), of_wrench(columns)));
-        let tables = groups.chain(wrenches).collect();
+        let targets = self.targets.iter().map(|columns| (TARGET.to_string(), table(columns)));
+        let tables = groups.chain(wrenches).chain(targets).collect();
         let t = self.time.map(|time| {
             let first = |column: usize| if count > 0 { number(0, column) } else { 0.0 };
             match time {
@@ -195,7 +205,11 @@ impl Recognised {
             Time::Column { column, .. } => [Some(column), None],
             Time::Pair { seconds, rest, .. } => [Some(seconds), Some(rest)],
         });
-        time.flatten().chain(groups).chain(self.wrenches.iter().flat_map(|(_, columns)| columns).copied())
+        let targets = self.targets.iter().flatten().flatten().map(|(column, _)| *column);
+        time.flatten()
+            .chain(groups)
+            .chain(targets)
+            .chain(self.wrenches.iter().flat_map(|(_, columns)| columns).copied())
     }
 
     /// Whether a column holds the time, which may be a date.

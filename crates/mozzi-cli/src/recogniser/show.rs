@@ -15,6 +15,10 @@ pub fn rows(
     let row = |(k, role): (usize, &Role)| {
         let (meaning, unit, joint) = match role {
             Role::Time => ("time".to_string(), time.map_or("s", Time::unit).to_string(), String::new()),
+            Role::Target(entry) => {
+                let joint = columns::entries(model, GROUPS[0]).get(*entry).copied().unwrap_or_default();
+                ("target position θ*".to_string(), unit(1.0, 0), joint.to_string())
+            }
             Role::Wrench => ("wrench".to_string(), "N m, N".to_string(), String::new()),
             Role::Unused(why) => (format!("not used: {why}"), String::new(), String::new()),
             Role::Value(group, entry) => {

@@ -80,6 +80,11 @@ impl TextTable {
         Ok(TextTable { name, header, place, reader, dialect, kilobytes })
     }
 
+    /// Whether numbers are written as 0,5.
+    pub fn has_decimal_commas(&self) -> bool {
+        self.dialect.has_decimal_commas
+    }
+
     /// Calls `each` with every row and its line. With `may_end_early`, a last row that is cut off is left out.
     pub fn rows(
         &mut self,

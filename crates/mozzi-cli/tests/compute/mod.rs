@@ -281,7 +281,11 @@ fn what_is_wrong_is_named() {
         ("tip-forces", &whole, "whole.arrow has no columns m_x m_y m_z f_x f_y f_z, which tip-forces needs"),
         ("forward-dynamics", &whole, "whole.arrow has no columns tau_1 …, which forward-dynamics needs"),
         ("mass-matrix", &null, "null.arrow: column `theta_1`, row 1 (counted from 0) is null, expected a number"),
-        ("mass-matrix", &text, "text.arrow: column `theta_1` has type Utf8, expected Float64, Float32 or integers"),
+        (
+            "mass-matrix",
+            &text,
+            "text.arrow: column `theta_1` has type Utf8, expected Float64, Float32, integers or timestamps",
+        ),
         (
             "mass-matrix",
             &name,

@@ -31,6 +31,10 @@ pub struct Problem {
     pub bodies: Vec<(usize, Prior, f64)>,
     /// Unknowns that are positive.
     pub positive: Vec<usize>,
+    /// Unknowns of either sign, of which the robot has the positive part.
+    pub split: Vec<usize>,
+    /// Unknowns that are 0: no motion tells them from others.
+    pub pinned: Vec<usize>,
     /// Further bounds.
     pub bounds: Vec<Bound>,
     /// γ: the weight of the prior, relative to the weighted squared error per sample.
@@ -42,8 +46,10 @@ pub struct Problem {
 /// The optimum.
 #[derive(Clone, Debug)]
 pub struct Optimum {
-    /// The unknowns.
+    /// The unknowns, of a robot that can exist.
     pub x: Vec<f64>,
+    /// What predictions contain beyond the robot: friction with memory or that falls with speed, a delay.
+    pub apparent: Vec<f64>,
     /// Standard deviations from the noise alone, for one independent sample: the prior is held fixed.
     pub deviations: Vec<f64>,
     /// How much of each unknown's certainty comes from the prior, 0 to 1.
@@ -56,7 +62,20 @@ pub struct Optimum {
     pub is_stopped: bool,
 }
 
+impl Optimum {
+    /// The unknowns that predict: the robot's with what is apparent.
+    pub fn predicting(&self) -> Vec<f64> {
+        self.x.iter().zip(&self.apparent).map(|(x, more)| x + more).collect()
+    }
+}
+
 impl Problem {
+    /// The same problem for a robot without anything apparent.
+    pub fn of_robot(&self) -> Problem {
+        let positive = self.positive.iter().chain(&self.split).copied().collect();
+        Problem { positive, split: Vec::new(), ..self.clone() }
+    }
+
     /// Minimizes
     ///
     /// > ‖R x − z‖² + γ Σ_i (tr(J₀ᵢ⁻¹Jᵢ) − log det(J₀ᵢ⁻¹Jᵢ) − 4) + ε Σ (f − log f − 1)
@@ -112,6 +131,7 @@ impl<'p> Newton<'p> {
         for (first, prior, _) in &problem.bodies {
             T.view_mut((*first, *first), (10, 10)).copy_from(&prior.map());
         }
+        problem.pinned.iter().for_each(|&k| T[(k, k)] = 0.0);
         let plain = data.R.view((0, 0), (P, P)).clone_owned();
         let sizes = problem.positive.iter().map(|&k| {
             let norm = plain.column(k).norm();
@@ -257,7 +277,9 @@ impl<'p> Newton<'p> {
 
     /// Whitened unknowns from plain ones.
     pub(crate) fn whitened(&self, x: &[f64]) -> Option<DVector<f64>> {
-        self.T.clone().lu().solve(&DVector::from_column_slice(x))
+        let mut T = self.T.clone();
+        self.problem.pinned.iter().for_each(|&k| T[(k, k)] = 1.0);
+        T.lu().solve(&DVector::from_column_slice(x))
     }
 
     /// Solves with a positive definite matrix, its diagonal scaled to 1.
@@ -328,7 +350,9 @@ impl<'p> Newton<'p> {
             sensitivities.set_column(k, &solved);
         }
         let cost = self.cost(&y, gamma) + self.rest;
-        Ok(Optimum { x: (&self.T * y).iter().copied().collect(), deviations, prior_share, steps, cost, is_stopped })
+        let x: Vec<f64> = (&self.T * y).iter().copied().collect();
+        let apparent = vec![0.0; self.P];
+        Ok(Optimum { x, apparent, deviations, prior_share, steps, cost, is_stopped })
     }
 }
 

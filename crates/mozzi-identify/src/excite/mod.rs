@@ -103,7 +103,7 @@ fn state(basis: &Basis, coefficients: &[f64], t: f64) -> [Vec<f64>; 3] {
 pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -> Result<Excitation, Error> {
     without_constraints(model)?;
     check(model, options)?;
-    let columns = Columns::new(model, options.choice.clone())?;
+    let columns = Columns::new(model, Choice { apparent: false, ..options.choice.clone() })?;
     let (P, n) = (columns.count(), model.n());
     let names = columns.unknowns.iter().map(|unknown| unknown.name.clone()).collect();
     let base = BaseParameters::of_columns(&stacked(&columns, 2 * P / n + 10)?, names);

@@ -40,7 +40,7 @@ pub fn parameters(found: &Identification<'_>) -> Result<Vec<Parameter>, Error> {
     let (setup, estimates) = (&found.setup, &found.estimates);
     let columns = &setup.columns;
     let robot = setup.base.values(&columns.prior());
-    let consistent = setup.base.values(&estimates.consistent.x);
+    let consistent = setup.base.values(&estimates.consistent.predicting());
     let advisor = Advisor::new(columns)?;
     let evidence = found.evidence();
     let force: Vec<f64> = evidence.rms().iter().map(|rms| rms.max(f64::MIN_POSITIVE.sqrt())).collect();
@@ -123,14 +123,14 @@ impl<'c, 'm> Advisor<'c, 'm> {
         let kind = self.columns.unknowns[k].kind;
         let name = self.columns.unknowns[k].name.rsplit_once('.').map_or("", |(joint, _)| joint);
         match kind {
-            Kind::Viscous(_) => format!("move {name} at different speeds"),
-            Kind::Coulomb(_) | Kind::Stribeck(_) => {
+            Kind::Viscous(_) | Kind::RotorViscous(_) => format!("move {name} at different speeds"),
+            Kind::Coulomb(_) | Kind::RotorCoulomb(_) | Kind::Stribeck(_) => {
                 format!("let {name} reverse, and move it slowly in both directions")
             }
             Kind::Offset(_) => format!("move {name} in both directions at the same postures"),
             Kind::Stiffness(_) => format!("move {name} through its range"),
             Kind::Gain(_) => "carry a payload of known mass in a further log".to_string(),
-            Kind::Armature(_) => format!("accelerate {name} more"),
+            Kind::Armature(_) | Kind::Apparent(_) => format!("accelerate {name} more"),
             Kind::Link(_) | Kind::Payload(_) => {
                 let most = |sums: &[f64]| {
                     sums.iter().enumerate().fold((0, 0.0), |a, (j, &x)| if x > a.1 { (j, x) } else { a })

@@ -1,5 +1,6 @@
 //! How good an identification is: predictions on what was left out first, then parameters.
 
+pub mod determined;
 pub mod excitation;
 mod gains;
 pub mod residuals;
@@ -7,19 +8,24 @@ pub mod sensor;
 pub mod suspicion;
 pub mod velocities;
 
-use crate::{Error, Finding, Identification, Log};
+use crate::{Error, Finding, Identification, Kind, Log, Servo, servos};
+use determined::{Standing, standings};
 use excitation::Parameter;
 use residuals::Residual;
 
 /// Everything that a report shows beside the errors.
 #[derive(Clone, Debug)]
 pub struct Judgement {
-    /// By log, then by force: what is left.
+    /// By log, then by force: what is left of it, where each block of time is predicted by a fit without it.
     pub residuals: Vec<Vec<Residual>>,
-    /// By log: predicted forces, N × n.
+    /// By log: forces predicted in that way, N × n.
     pub predicted: Vec<Vec<f64>>,
     /// Base parameters.
     pub parameters: Vec<Parameter>,
+    /// Position controllers, if targets were logged.
+    pub servos: Vec<Servo>,
+    /// By unknown: whether the data determines it.
+    pub standings: Vec<Standing>,
     /// Mistakes in the logs, and effects that the model lacks.
     pub findings: Vec<Finding>,
 }
@@ -35,7 +41,7 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
     let names: Vec<&str> = model.velocity_names().collect();
     let (mut residuals, mut predicted, mut findings) = (Vec::new(), Vec::new(), Vec::new());
     for (samples, log) in found.samples.iter().zip(logs) {
-        let of_log = crate::predict(columns, &found.estimates.consistent.x, samples)?;
+        let of_log = found.predicted_unseen(samples)?;
         let all: Vec<Residual> = (0..n).map(|j| Residual::new(names[j], j, n, samples, &of_log)).collect();
         findings.extend(lag(&log.name, &all, 1.0 / samples.rate));
         findings.extend(colour(&log.name, &all));
@@ -71,7 +77,63 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
             format!("the robot's own inertia of {name} is massless or thinner than 5 mm; its prior is 1 cm thick"),
         ));
     }
-    Ok(Judgement { residuals, predicted, parameters, findings })
+    findings.extend(apparent(found));
+    let standings = standings(found, &parameters);
+    let servos = match model.configuration_space().is_flat() {
+        true => servos(&names, &found.samples, &gains(found)),
+        false => Vec::new(),
+    };
+    findings.extend(unlike_a_servo(&servos));
+    Ok(Judgement { servos, residuals, predicted, parameters, standings, findings })
+}
+
+/// N m or N of one unit of each force: the drive gains, if currents were logged.
+fn gains(found: &Identification<'_>) -> Vec<f64> {
+    let columns = &found.setup.columns;
+    let x = &found.estimates.consistent.x;
+    (0..columns.model.n()).map(|j| columns.index(Kind::Gain(j)).map_or(1.0, |k| x[k])).collect()
+}
+
+/// Joints whose forces are no function of target, position and velocity as in a PD law.
+fn unlike_a_servo(servos: &[Servo]) -> Option<Finding> {
+    /// A larger error over force.
+    const UNLIKE: f64 = 0.3;
+    let is_unlike = |servo: &&Servo| servo.nrms > UNLIKE || servo.stiffness[0] <= 0.0;
+    let bad: Vec<String> =
+        servos.iter().filter(is_unlike).map(|servo| format!("{} ({:.0} %)", servo.joint, 100.0 * servo.nrms)).collect();
+    (!bad.is_empty()).then(|| {
+        Finding::warning(
+            "no_servo",
+            format!(
+                "kp (θ*(t − δ) − θ) − kd θ̇ + b does not explain the forces of {}: an integrator, feed-forward, saturation \
+                 or another controller; their gains mean little",
+                bad.join(", ")
+            ),
+        )
+    })
+}
+
+/// Inertia and damping that predictions contain and no robot has.
+fn apparent(found: &Identification<'_>) -> Option<Finding> {
+    /// A smaller share of a joint's force is not worth a word.
+    const SHARE: f64 = 0.01;
+    let (columns, optimum) = (&found.setup.columns, &found.estimates.consistent);
+    let evidence = found.evidence();
+    let (force, written) = (evidence.rms(), &found.fitted.written);
+    let names: Vec<&str> = columns.model.velocity_names().collect();
+    let is_there = |j: usize| (written[j] - found.fitted.consistent[j]) > SHARE * force[j];
+    let joints: Vec<&str> = (0..names.len()).filter(|&j| is_there(j)).map(|j| names[j]).collect();
+    let has_any = optimum.apparent.iter().any(|x| *x != 0.0);
+    (has_any && !joints.is_empty()).then(|| {
+        Finding::note(
+            "apparent",
+            format!(
+                "the forces of {} contain what acts like an inertia or a damping that no robot has: friction with \
+                 memory or that falls with speed, or a delay; predictions contain it, the written robot does not",
+                joints.join(", ")
+            ),
+        )
+    })
 }
 
 /// A common lag of all forces, where it is clear: torques that were filtered forwards only.

@@ -32,7 +32,7 @@ pub fn behind_the_gears(found: &Identification<'_>) -> Result<Option<Finding>, E
     let setup = Setup::new(columns.model, choice, found.setup.problem.gamma, &Limits::default())?;
     let compress = |samples| Compressed::new(&setup.columns, &setup.pattern, samples, None);
     let logs: Vec<Compressed> = found.samples.iter().map(compress).collect::<Result<_, _>>()?;
-    let without = cross_validated(&setup, &logs, found.tenths(), 5, &|| false)?;
+    let (without, _) = cross_validated(&setup, &logs, found.tenths(), 5, &|| false)?;
     let [with, without] = [errors, &without].map(|errors| 100.0 * errors.normalized(&errors.consistent));
     if without > 1.01 * with {
         return Ok(None);

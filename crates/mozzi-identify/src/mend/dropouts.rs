@@ -80,9 +80,8 @@ impl Log {
             let rows = (0..N).filter(|&row| is_kept(row));
             *table = rows.flat_map(|row| table[row * width..][..width].to_vec()).collect();
         };
-        for table in [&mut self.theta, &mut self.tau].into_iter().chain(&mut self.dtheta).chain(&mut self.ddtheta) {
-            keep(table);
-        }
+        let known = [&mut self.dtheta, &mut self.ddtheta, &mut self.target].into_iter().flatten();
+        [&mut self.theta, &mut self.tau].into_iter().chain(known).for_each(keep);
         self.wrenches.iter_mut().for_each(|(_, table)| keep(table));
         keep(&mut self.t);
     }

@@ -57,8 +57,15 @@ pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
                 at(log, first)
             ),
         ));
-        let theta = &mut log.to_mut().theta;
-        rows.iter().zip(&offsets).for_each(|(&row, offset)| theta[row * nq + q] += offset);
+        let log = log.to_mut();
+        rows.iter().zip(&offsets).for_each(|(&row, offset)| log.theta[row * nq + q] += offset);
+        // the target of the same turn
+        if let Some(target) = &mut log.target {
+            for &row in &rows {
+                let turns = (log.theta[row * nq + q] - target[row * nq + q]) / core::f64::consts::TAU;
+                target[row * nq + q] += core::f64::consts::TAU * turns.round();
+            }
+        }
     }
 }
 

@@ -102,6 +102,8 @@ pub struct Samples {
     pub coulomb: Option<Vec<f64>>,
     /// N × n: the same of Stribeck's friction.
     pub stribeck: Option<Vec<f64>>,
+    /// N × n: target positions, if they were logged.
+    pub target: Option<Vec<f64>>,
     /// N × n: whether the force may be used.
     pub is_valid: Vec<bool>,
     /// N × 6 for each frame.
@@ -170,6 +172,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     if log.dtheta.is_some() {
         (samples.coulomb, samples.stribeck) = (Some(Vec::new()), filter.friction.stribeck.map(|_| Vec::new()));
     }
+    samples.target = log.target.as_ref().map(|_| Vec::new());
     samples.wrenches = log.wrenches.iter().map(|(frame, _)| (*frame, Vec::new())).collect();
     for run in rows.runs.iter().filter(|run| run.len() > trim.saturating_mul(2).saturating_add(10)) {
         let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter };
@@ -291,6 +294,8 @@ impl Part<'_> {
             self.smooth(&times, x);
             *removed += kept.clone().map(|k| (raw[k] - x[k]).powi(2)).sum::<f64>();
         }
+        let mut target = self.log.target.as_ref().map(|table| columns(table, n));
+        target.iter_mut().flatten().for_each(|x| self.smooth(&times, x));
         let mut wrenches: Vec<Vec<Vec<f64>>> = self.log.wrenches.iter().map(|(_, table)| columns(table, 6)).collect();
         wrenches.iter_mut().flatten().for_each(|x| self.smooth(&times, x));
 
@@ -301,7 +306,9 @@ impl Part<'_> {
             push(&mut samples.dtheta, &dtheta);
             push(&mut samples.ddtheta, &ddtheta);
             push(&mut samples.tau, &tau);
-            for (to, from) in [(&mut samples.coulomb, &coulomb), (&mut samples.stribeck, &stribeck)] {
+            let optional =
+                [(&mut samples.coulomb, &coulomb), (&mut samples.stribeck, &stribeck), (&mut samples.target, &target)];
+            for (to, from) in optional {
                 if let (Some(to), Some(from)) = (to, from) {
                     push(to, from);
                 }

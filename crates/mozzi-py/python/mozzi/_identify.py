@@ -66,7 +66,7 @@ class Identification:
         How well forces are predicted, and whether the result can be trusted.
     report : dict
         As ``mozzi identify --json``: "verdict", "parameters", "base_parameters", "fitted", "left_out", "held_out", "validations", "residuals",
-        "findings", "condition".
+        "servos", "findings", "condition".
     forces : list of Forces
         Measured and predicted forces of each log.
     """
@@ -90,6 +90,19 @@ class Identification:
     def parameters(self) -> dict[str, float]:
         """The identified parameters by name."""
         return {entry["name"]: entry["value"] for entry in self.report["parameters"]}
+
+    @property
+    def servos(self) -> dict[str, dict[str, float]]:
+        """By joint, the law of its position controller: "stiffness", "damping", "delay", "bias" and "nrms".
+
+        Empty unless a log has target positions.
+        """
+        laws = {}
+        for entry in self.report["servos"]:
+            law = {name: entry[name] for name in ("delay", "bias", "nrms")}
+            law["stiffness"], law["damping"] = entry["stiffness"][0], entry["damping"][0]
+            laws[entry["joint"]] = law
+        return laws
 
     @property
     def findings(self) -> list[str]:
@@ -175,7 +188,7 @@ def identify(
     model : Model
         The robot; its own values are the prior where the data is silent.
     logs : mapping or sequence of mappings
-        Arrays "t" (N,), "theta" (N, nq), "tau" (N, n), and "dtheta", "ddtheta" (N, n) if they are known; of floating
+        Arrays "t" (N,), "theta" (N, nq), "tau" (N, n), and "dtheta", "ddtheta" (N, n) if they are known, "target" (N, n) of position controllers; of floating
         bases also "wrench_FRAME" (N, 6), the measured wrench (m, f) that a frame applies to the environment, in the
         frame's coordinates. "tau" of floating bases may have the joints' columns alone.
     torque : {'motor', 'link'}

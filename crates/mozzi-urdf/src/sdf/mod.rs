@@ -92,7 +92,7 @@ pub(crate) fn read(
         depth: 0,
         instances: 0,
     };
-    let result = reader.root(&pages.root("sdf")?, cx);
+    let result = reader.root(&Element::root(&pages, "sdf")?, cx);
     cx.report_repeated();
     result
 }

@@ -140,7 +140,7 @@ impl<'a> Reader<'a> {
             }
             return None;
         }
-        let root = self.pages.root_of(page, "sdf")?;
+        let root = Element::root_of(self.pages, page, "sdf")?;
         let own = Version::read(&root, cx);
         root.check_attributes(&SDF, cx);
         let mut models = root.elements().filter(|child| child.name() == "model" && !child.has_prefix());

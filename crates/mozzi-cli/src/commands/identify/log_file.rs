@@ -3,7 +3,7 @@
 use super::join::join;
 use super::joint_states::{self, is_bag};
 use crate::failure::{Failure, Result};
-use crate::recogniser::{Force, IS_CURRENT, Request};
+use crate::recogniser::{Force, IS_CURRENT, Request, TARGET};
 use crate::tables::samples::Row;
 use crate::tables::samples::Samples;
 use crate::tables::{How, read};
@@ -20,7 +20,8 @@ pub struct Given<'g> {
 
 /// The table of a log, as its columns are recognised: of any format, MCAP and rosbag2 with `JointState` messages.
 pub fn read_table(file: &str, model: &Model, given: &Given) -> Result<Samples> {
-    let request = Request { order: given.order, force: given.force, topic: given.topic, has_flags: true };
+    let request =
+        Request { order: given.order, force: given.force, topic: given.topic, has_flags: true, targets: true };
     if is_bag(file) {
         return joint_states::read(file, model, &request);
     }
@@ -57,10 +58,12 @@ pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Ro
             None => need("forces", "tau_JOINT, effort_JOINT or torque_1"),
         }
     })?;
+    let is_flat = model.configuration_space().is_flat();
+    let target = samples.tables.remove(TARGET).filter(|_| is_flat);
     let (dtheta, ddtheta) = (samples.tables.remove("dtheta"), samples.tables.remove("ddtheta"));
     let wrenches = samples.tables.into_iter().filter(|(name, _)| name == "wrench" || name.starts_with("wrench_"));
     let wrenches = wrenches.map(|(table, rows)| Ok((frame_of(&name, &table, model)?, rows))).collect::<Result<_>>()?;
-    Ok((Log { name, t, theta, dtheta, ddtheta, tau, wrenches, is_time_certain, ..Log::default() }, columns))
+    Ok((Log { name, t, theta, dtheta, ddtheta, tau, target, wrenches, is_time_certain, ..Log::default() }, columns))
 }
 
 /// The frame of a table `wrench` or `wrench_FRAME`.

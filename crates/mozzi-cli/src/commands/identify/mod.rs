@@ -1,10 +1,12 @@
 //! `mozzi identify`: the robot's parameters from logs of its motion.
 
+mod coupled;
 mod join;
 mod joint_states;
 mod log_file;
 mod output;
 mod page;
+mod simulators;
 mod topics;
 
 use crate::columns::save;
@@ -17,6 +19,7 @@ use crate::robot::FileArguments;
 use crate::tables::samples::Row;
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
+use coupled::with_rotors;
 use log_file::{Given, read_log, read_table};
 use mozzi::Model;
 use mozzi_identify::judgement::judge;
@@ -41,6 +44,10 @@ pub struct IdentifyArguments {
     /// Keep the old numbers in comments of OUT
     #[arg(long, requires = "out")]
     old_values: bool,
+    /// Print armature, friction and the gains of position controllers in the words of a simulator, and where each
+    /// parameter went
+    #[arg(long, value_name = "SIMULATOR", conflicts_with = "json")]
+    write: Option<simulators::Simulator>,
     /// Write a report: forces, residuals, parameters, ellipsoids of inertia
     #[arg(long, value_name = "FILE.html")]
     report: Option<String>,
@@ -102,12 +109,19 @@ pub struct IdentifyArguments {
     /// Lock a joint that the log does not move, at this position, rad or m; `*` matches any text: 'gripper_*=0'
     #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
     lock: Vec<String>,
+    /// Joints that one rotor turns together, as in the wrists of some arms: its inertia and friction act on the sum of
+    /// their motions, each times its ratio, 1 unless it is given
+    #[arg(long, value_name = "JOINT[=RATIO],JOINT[=RATIO]", allow_hyphen_values = true)]
+    coupled: Vec<String>,
     /// The log's names of joints, in the robot's order
     #[arg(long, value_name = "NAME,NAME,…", value_delimiter = ',')]
     order: Vec<String>,
     /// The topic of a bag, or the beginning of the columns' path
     #[arg(long, value_name = "NAME")]
     topic: Option<String>,
+    /// Print every parameter, what each column of the logs is taken for, and what the motion does not determine
+    #[arg(long)]
+    all: bool,
     /// Print what each column of the logs is taken for, and nothing else
     #[arg(long)]
     columns: bool,
@@ -146,9 +160,10 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
+    let coupled = with_rotors(&whole, &arguments.coupled)?;
     let lock = arguments.lock_list(&whole)?;
     let locks = edits::locks(&lock, &whole)?;
-    let model = if locks.is_empty() { whole.clone() } else { whole.with_locked_joints(&locks)? };
+    let model = if locks.is_empty() { coupled } else { coupled.with_locked_joints(&locks)? };
     let given = arguments.given();
     if arguments.columns {
         return arguments.column_tables(&model, &given);
@@ -193,7 +208,14 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     }
     let text = match arguments.robot.json {
         true => json::print(&json::of_robot(&model, mozzi_report::fit_json(&found, &judged, &validations))),
-        false => page::text(&verdict, &found, &judged, &validations, &columns, &written),
+        false => {
+            let (verdict, judged, validations, logs) = (&verdict, &judged, &validations, &columns);
+            let is_all = arguments.all;
+            let text =
+                page::text(&found, &page::Shown { verdict, judged, validations, logs, written: &written, is_all });
+            let words = arguments.write.map(|to| simulators::page(to, &found, &robot, &judged.servos));
+            text + &words.unwrap_or_default()
+        }
     };
     match found.estimates.consistent.is_stopped {
         true => Err(Failure::Stopped(text)),

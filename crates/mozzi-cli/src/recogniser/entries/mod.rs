@@ -32,6 +32,7 @@ const MEANINGS: [&str; 4] = ["position", "velocity", "acceleration", "force"];
 /// The groups with their columns.
 pub struct Assignment {
     pub groups: [Option<Vec<Option<Column>>>; GROUPS.len()],
+    pub targets: Option<Vec<Option<Column>>>,
     pub notes: Vec<String>,
 }
 
@@ -57,7 +58,7 @@ impl Assignment {
         let mut readings = search.readings(roles)?;
         search.name_indices(&mut readings);
         search.resolve(&mut readings);
-        let mut origin: Option<usize> = None;
+        let (mut origin, mut targets): (Option<usize>, _) = (None, None);
         for group in [THETA, DTHETA, DDTHETA, TAU] {
             let mut families: BTreeMap<Kind, Family> = BTreeMap::new();
             for (column, reading) in readings.iter().filter(|(_, reading)| reading.quantity == group) {
@@ -67,6 +68,13 @@ impl Assignment {
                 search.leave_currents(&mut families, roles);
             } else if let Some(origin) = origin {
                 search.leave_others(&mut families, roles, origin, group);
+            }
+            let is_measured = |kind: &Kind| class(kind.origin) == 0;
+            if request.targets && group == THETA && families.keys().any(is_measured) {
+                let mut wanted = families.clone();
+                wanted.retain(|kind, _| !is_measured(kind));
+                families.retain(|kind, _| is_measured(kind));
+                targets = search.choose_targets(wanted, roles);
             }
             if let Some((kind, columns)) = search.choose(group, families, roles)? {
                 origin = origin.or(Some(class(kind.origin)));
@@ -79,7 +87,7 @@ impl Assignment {
             }
         }
         search.check_spelling(roles)?;
-        Ok(Assignment { groups, notes: search.notes })
+        Ok(Assignment { groups, targets, notes: search.notes })
     }
 }
 
@@ -266,6 +274,26 @@ impl Search<'_> {
                 self.name(column),
                 if group == DTHETA { "velocities" } else { "accelerations" }
             ));
+        }
+    }
+
+    /// Targets beside measured positions; a set that is not complete is not used, with a note.
+    fn choose_targets(&mut self, families: BTreeMap<Kind, Family>, roles: &mut [Role]) -> Option<Vec<Option<Column>>> {
+        match self.choose(THETA, families, roles) {
+            Ok(found) => {
+                let columns = found?.1;
+                columns.iter().enumerate().for_each(|(entry, column)| {
+                    if let Some((column, _)) = column {
+                        roles[*column] = Role::Target(entry);
+                    }
+                });
+                Some(columns)
+            }
+            Err(why) => {
+                let why = if let Failure::Wrong(why) = why { why } else { String::new() };
+                self.notes.push(format!("target positions are not used: {why}"));
+                None
+            }
         }
     }
 

@@ -1,7 +1,9 @@
 //! The numbers of an Arrow column.
 
 use arrow_array::types::{
-    Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+    Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, TimestampMicrosecondType,
+    TimestampMillisecondType, TimestampNanosecondType, TimestampSecondType, UInt8Type, UInt16Type, UInt32Type,
+    UInt64Type,
 };
 use arrow_array::{Array, ArrowPrimitiveType, PrimitiveArray};
 
@@ -19,10 +21,17 @@ pub fn numbers(column: &dyn Array, to: &mut Vec<f64>) -> Result<(), (Option<usiz
         || of::<UInt8Type>(column, to, f64::from)
         || of::<UInt16Type>(column, to, f64::from)
         || of::<UInt32Type>(column, to, f64::from)
-        || of::<UInt64Type>(column, to, |x| x as f64);
+        || of::<UInt64Type>(column, to, |x| x as f64)
+        // s since 1970
+        || of::<TimestampSecondType>(column, to, |x| x as f64)
+        || of::<TimestampMillisecondType>(column, to, |x| x as f64 * 1e-3)
+        || of::<TimestampMicrosecondType>(column, to, |x| x as f64 * 1e-6)
+        || of::<TimestampNanosecondType>(column, to, |x| x as f64 * 1e-9);
     match is_read {
         true => Ok(()),
-        false => Err((None, format!("has type {}, expected Float64, Float32 or integers", column.data_type()))),
+        false => {
+            Err((None, format!("has type {}, expected Float64, Float32, integers or timestamps", column.data_type())))
+        }
     }
 }
 
