@@ -3,8 +3,9 @@
 import { App } from "./app.js";
 import { CodePanel } from "./codepanel.js";
 import { EditPanel } from "./editpanel.js";
-import { chosen, dropped, robotsOf } from "./files.js";
+import { chosen, dropped, meshesIn, robotsOf } from "./files.js";
 import { Grab } from "./grab.js";
+import { Hover } from "./hover.js";
 import { JointPanel } from "./jointpanel.js";
 import { KINDS } from "./kinds.js";
 import { Library } from "./library.js";
@@ -63,14 +64,24 @@ async function openEntry(entry, more) {
   const isFirst = !app.robot;
   if (!isFirst) app.remember();
   const done = await app.open(entry, more);
-  if (done && !app.grabbed) app.grabbed = new Grab(app);
+  if (done && !app.grabbed) [app.grabbed, app.hover] = [new Grab(app), new Hover(stage)];
   showEntries();
   return done;
 }
 
+// Meshes without a robot are those of the robot that is shown.
+async function addMeshes(list) {
+  const { entry, description, values, state } = app;
+  entry.meshes = [...list, ...(entry.meshes ?? [])];
+  const { theta, dtheta } = state;
+  return app.open(entry, { description, values, theta, dtheta, isNew: true });
+}
+
 // Robots of dropped or chosen files join the menu; the likeliest is opened.
-async function openFiles(list) {
-  const found = await robotsOf(list);
+async function openFiles(list, isForMeshes = false) {
+  const meshes = meshesIn(list);
+  const found = isForMeshes && meshes.length > 0 ? [] : await robotsOf(list);
+  if (found.length === 0 && meshes.length > 0 && app.robot) return addMeshes(meshes);
   if (found.length === 0) {
     app.trouble("No robot is among these files", "Expected a file of URDF, xacro, MJCF or mozzi's JSON; meshes may come with it, as files or in folders.");
     return false;
@@ -83,15 +94,24 @@ async function openFiles(list) {
 }
 
 function addFiles() {
+  let isForMeshes = false;
   find("robot").addEventListener("change", () => openEntry(entries[find("robot").value]));
   for (const [button, input] of [["open", "files"], ["folder", "folders"]]) {
-    find(button).addEventListener("click", () => find(input).click());
+    find(button).addEventListener("click", () => {
+      isForMeshes = false;
+      find(input).click();
+    });
     find(input).addEventListener("change", async () => {
       const list = chosen(find(input).files);
       find(input).value = "";
-      if (list.length > 0) await openFiles(list);
+      if (list.length > 0) await openFiles(list, isForMeshes);
+      isForMeshes = false;
     });
   }
+  find("missing").addEventListener("click", () => {
+    isForMeshes = true;
+    find("folders").click();
+  });
   let depth = 0;
   const show = (isOver) => (find("drop").hidden = !isOver);
   addEventListener("dragenter", (event) => {
@@ -119,8 +139,20 @@ function addControls() {
   find("motors").addEventListener("change", () => {
     app.settings.target = null;
     set({ motors: find("motors").value });
+    app.showControls();
   });
-  find("omega").addEventListener("input", () => set({ omega: find("omega").valueAsNumber }));
+  find("omega").addEventListener("input", () => {
+    set({ omega: find("omega").valueAsNumber });
+    app.showControls();
+  });
+  // on a phone the settings are a sheet
+  const sheet = (isOpen) => {
+    find("settings").classList.toggle("open", isOpen);
+    find("sheet").setAttribute("aria-expanded", String(isOpen));
+  };
+  find("sheet").addEventListener("click", () => sheet(find("sheet").getAttribute("aria-expanded") !== "true"));
+  document.addEventListener("pointerdown", (event) => !event.target.closest("#settings, #sheet") && sheet(false));
+  app.closeSheet = () => sheet(false);
   find("ground").addEventListener("change", () => app.setGround(find("ground").checked));
   find("floating").addEventListener("change", async () => {
     await app.edit({ what: find("floating").checked ? "floating" : "fixed" });
@@ -138,7 +170,7 @@ function addKeys() {
   const kinds = Object.fromEntries(Object.entries(KINDS).map(([kind, { key }]) => [key, kind]));
   const acts = {
     " ": () => find("play").click(), Home: () => app.reset(), 0: () => stage.look(), d: () => theme.toggle(), p: () => app.savePicture(),
-    o: () => find("open").click(), "?": () => find("about-page").showModal(), Escape: () => app.clearTrouble(),
+    o: () => find("open").click(), "?": () => find("about-page").showModal(), Escape: () => [app.clearTrouble(), app.closeSheet()],
   };
   document.addEventListener("keydown", (event) => {
     const { tagName, type } = event.target;

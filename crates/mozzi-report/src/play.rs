@@ -40,6 +40,8 @@ pub struct Played<'a> {
     pub file: &'a str,
     /// The file's text: URDF, MJCF or JSON.
     pub text: &'a str,
+    /// Other texts that it includes, by their paths from its folder.
+    pub included: &'a [(String, String)],
     /// The robot itself; what differs from the text comes from options.
     pub model: &'a Model,
     /// Its meshes.
@@ -62,6 +64,9 @@ pub fn play_html(first: &Played) -> String {
         let name = first.name.rsplit(['/', '\\']).next().unwrap_or_default();
         let mut own = entry(name, first.file, first.text, false);
         own["description"] = json::to_value(first.model.description());
+        for (path, text) in first.included {
+            own["files"][path] = json!(text);
+        }
         own["meshes"] = first.drawing.meshes_to_json();
         robots.insert(0, own);
         0
@@ -99,6 +104,7 @@ mod tests {
             name: "ur5",
             file: "ur5.urdf",
             text: "",
+            included: &[],
             model: &model,
             drawing: &drawing,
             theta: None,
@@ -117,11 +123,13 @@ mod tests {
             name: "a/own.json",
             file: "own.json",
             text,
+            included: &[("parts/b.xml".to_string(), "<mujoco/>".to_string())],
             model: &model,
             drawing: &drawing,
             theta: None,
         });
         assert!(page.contains("\"first\":0") && page.contains("\"name\":\"own.json\""));
+        assert!(page.contains("\"parts/b.xml\":\"\\u003cmujoco/>\""), "what it includes");
     }
 
     #[test]
@@ -130,7 +138,7 @@ mod tests {
         let drawing = Drawing::default();
         let (name, file) = ("double_pendulum", "double_pendulum.urdf");
         let theta = Some(&[0.125, -0.25][..]);
-        let page = play_html(&Played { name, file, text: "", model: &model, drawing: &drawing, theta });
+        let page = play_html(&Played { name, file, text: "", included: &[], model: &model, drawing: &drawing, theta });
         assert!(page.contains("\"theta\":[0.125,-0.25]"));
     }
 }

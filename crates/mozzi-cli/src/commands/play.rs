@@ -11,6 +11,7 @@ use crate::state::StartArguments;
 use clap::{Arg, Args};
 use mozzi::Model;
 use mozzi_report::{Played, play_html};
+use mozzi_urdf::mjcf::included;
 use mozzi_urdf::{embedded, expanded};
 use serde_json::json;
 use std::path::Path;
@@ -66,7 +67,9 @@ fn page(arguments: &PlayArguments, model: &Model) -> Result<String> {
     let theta = if arguments.start.is_given() { Some(arguments.start.read(model)?.0) } else { None };
     let name = input::name(name_or_path);
     let theta = theta.as_deref();
-    Ok(play_html(&Played { name, file: &file.0, text: &file.1, model, drawing: &drawing, theta }))
+    let included = if name_or_path == "-" { Vec::new() } else { included(Path::new(name_or_path)) };
+    let [file, text] = [&file.0, &file.1];
+    Ok(play_html(&Played { name, file, text, included: &included, model, drawing: &drawing, theta }))
 }
 
 /// A name and the text of the robot's file, expanded if it is xacro.
