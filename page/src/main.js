@@ -307,7 +307,7 @@ function showFirst(isLoaded) {
 }
 
 Object.assign(window.mozzi, {
-  robot, motion, overlays, show, library,
+  robot, motion, overlays, plots, show, library,
   seek: (time) => player.seek(time),
   setTheta: (theta) => setJoints(theta),
   state: () => state,

@@ -208,7 +208,7 @@ fn controls_say_what_they_do() {
     for (k, found) in found.iter().enumerate() {
         assert_eq!(
             words(&found["stiffness"]),
-            ["", "", "stiffness ω8 rad/s", "stiffness ω8.5 rad/s"],
+            ["", "", "stiffness ω 8 rad/s", "stiffness ω 8.5 rad/s"],
             "only where it acts"
         );
         assert!(found["nudges"].as_str().is_some_and(|said| said.starts_with("tool, 1 cm")), "{}", found["nudges"]);
@@ -238,4 +238,115 @@ fn controls_say_what_they_do() {
     assert_eq!(phone["sheet"], json!([false, true, false]), "on a phone they are a sheet");
     let stage = numbers(&phone["stage"]);
     assert!(stage[0] == 0.0 && stage[1] > 300.0, "the scene stays: {stage:?}");
+}
+
+/// How different two colours look, roughly: red, green and blue weighed as the eye does; of a reader without one kind
+/// of cones, red and green as one.
+fn apart(a: &str, b: &str) -> f64 {
+    let part = |text: &str, k: usize| f64::from(u8::from_str_radix(&text[1 + 2 * k..3 + 2 * k], 16).expect("a colour"));
+    let weights = [2.0, 4.0, 3.0];
+    (0..3).map(|k| weights[k] * (part(a, k) - part(b, k)).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+fn plots_have_numbers_and_cut_what_hides_the_rest() {
+    let program = match browser() {
+        Ok(program) => program,
+        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
+    };
+    let folder = folder("looks_plots");
+    // twelve joints of a quadruped that never turn, but for one acceleration of an impact
+    let mut table = String::from("t");
+    (1..13).for_each(|k| table += &format!(",theta_{k}"));
+    (1..13).for_each(|k| table += &format!(",ddtheta_{k}"));
+    (1..13).for_each(|k| table += &format!(",dtheta_{k}"));
+    table += "\n";
+    for row in 0..400 {
+        let t = 0.01 * f64::from(row);
+        let of = |k: u32| (t + f64::from(k.min(10))).sin();
+        let cells = (0..12)
+            .map(of)
+            .chain((0..12).map(|k| if row == 200 && k == 0 { 2e4 } else { of(k) }))
+            .chain((0..12).map(of));
+        table += &cells.fold(t.to_string(), |line, x| format!("{line},{x}"));
+        table += "\n";
+    }
+    let table = common::file(&folder, "legs.csv", &table);
+    let legs = page(&folder, "legs", &["view", "anymal", &table]);
+    let found = look(&program, vec![job("plots", &legs, 1280, json!({})), job("plots", &legs, 390, json!({}))]);
+    for found in &found {
+        let plots = found["plots"].as_array().expect("plots");
+        let titles: Vec<_> = plots.iter().map(|plot| (plot["title"].as_str(), plot["unit"].as_str())).collect();
+        for wanted in [("θ", "rad"), ("θ̇", "rad/s"), ("θ̈", "rad/s²")] {
+            assert!(titles.contains(&(Some(wanted.0), Some(wanted.1))), "{titles:?}");
+        }
+        for plot in plots {
+            for axis in ["up", "along"] {
+                assert!(plot["ticks"][axis].as_array().is_some_and(|ticks| ticks.len() > 1), "{axis}: {plot}");
+            }
+            let is_cut = plot["title"] == "θ̈";
+            assert_eq!(plot["cut"], if is_cut { json!([null, 2e4]) } else { json!([null, null]) }, "{plot}");
+            // the eleventh and the twelfth joint move as one
+            let on = numbers(&plot["on"]);
+            assert_eq!((on[11], on.iter().sum::<f64>()), (1.0, 1.0), "{plot}");
+            let colours = words(&plot["colours"]);
+            for (k, a) in colours[..10].iter().enumerate() {
+                for b in &colours[..k] {
+                    assert!(apart(a, b) > 100.0, "{a} and {b}: {}", apart(a, b));
+                }
+            }
+        }
+        assert_eq!(found["patterned"], true, "lines change by dashes");
+    }
+}
+
+#[test]
+fn the_fit_report_answers_first() {
+    let program = match browser() {
+        Ok(program) => program,
+        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
+    };
+    let folder = folder("looks_fit");
+    let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
+    let (way, log, report) = (path("way.csv"), path("log.csv"), path("fit.html"));
+    let limits = ["--max-velocity", "3", "--max-acceleration", "10", "--harmonics", "3"];
+    text(&[&["excite", "double_pendulum", "--duration", "5", "--out", &way], &limits[..]].concat());
+    // friction that the robot's file does not have
+    let rows = std::fs::read_to_string(&way).expect("rows");
+    let (head, rest) = rows.split_once('\n').expect("a header");
+    let place = |name: &str| head.split(',').position(|known| known == name).expect("a column");
+    let mut noisy = format!("{head}\n");
+    for row in rest.lines() {
+        let mut cells: Vec<f64> = row.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        for k in 1..3 {
+            let rate = cells[place(&format!("dtheta_{k}"))];
+            cells[place(&format!("tau_{k}"))] += 0.3 * rate + 0.4 * (rate / 0.05).tanh();
+        }
+        noisy += &cells.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        noisy += "\n";
+    }
+    std::fs::write(&log, noisy).expect("written");
+    text(&["identify", "double_pendulum", &log, "--out", &path("found.urdf"), "--report", &report]);
+    let job = |width| json!({ "do": "fit", "url": url(Path::new(&report)), "width": width, "height": 844 });
+    let found = look(&program, vec![job(1280), job(390)]);
+    for found in &found {
+        assert_eq!(found["first"], "verdict good", "the verdict comes first");
+        assert!(
+            found["answer"].as_str().is_some_and(|said| said.starts_with("Predicts unseen torques to ")),
+            "{found}"
+        );
+        let headings = words(&found["headings"]);
+        let order = ["What is not determined", "What was noticed", "Forces, measured and predicted", "Friction"];
+        assert_eq!(headings[..4], order, "{headings:?}");
+        assert!(
+            headings.contains(&"Masses [kg]") && headings.contains(&"Viscous friction [N m s/rad]"),
+            "{headings:?}"
+        );
+        assert!(found["open"] == 0 && found["folded"].as_u64() >= Some(3), "tables are folded: {found}");
+        assert!(found["dots"].as_u64() > Some(100) && found["bars"].as_u64() > Some(8), "{found}");
+        let [light, dark] = [0, 1].map(|k| &found["grounds"][k]);
+        assert!(light[0] == light[1] && dark[0] == dark[1] && light[0] != dark[0] && light[2] != dark[2], "{found}");
+        assert_eq!(found["paper"], 1, "one printed page");
+        assert!(words(&found["printed"]).contains(&"Forces, measured and predicted"), "{found}");
+    }
 }

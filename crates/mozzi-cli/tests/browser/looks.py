@@ -3,7 +3,7 @@
 A job: {"do": name of a function below, "url", "width", "height", …}; with "looks" also the least contrast in light and dark.
 """
 
-from visit import serve
+from visit import least, serve
 
 DROP = "(texts) => mozzi.openTexts(texts)"
 
@@ -67,10 +67,13 @@ def loads(page, job):
 def forces(page, job):
     """A quadruped on the ground: which layers there are, which way forces point, the floor."""
     found = {"before": page.evaluate(SHOWN)}
+    settings(page)
     page.click("#floating")
     page.wait_for_function("() => mozzi.app.robot.isFloating")
     page.click("#ground")
     page.select_option("#motors", "pd")
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("Escape")
     page.click("#play")
     page.wait_for_function("() => mozzi.state().time > 0.3 && mozzi.state().touches.length > 2")
     page.click("#play")
@@ -103,6 +106,12 @@ def forces(page, job):
     return found
 
 
+def settings(page):
+    """On a phone motors and ground are in a sheet."""
+    if not page.is_visible("#settings"):
+        page.click("#sheet")
+
+
 def press(page, kind):
     page.evaluate("(kind) => mozzi.app.stage.buttons[kind].click()", kind)
 
@@ -125,16 +134,14 @@ def ellipsoids(page, job):
 def controls(page, job):
     """The row of controls, the stiffness of the motors, the search, units, the help."""
     found = {"about": page.inner_text("#about"), "stiffness": []}
-    phone = page.viewport_size["width"] < 500
     found["sheet"] = [page.is_visible("#settings")]
     for motors in ("off", "gravity", "pd"):
-        if phone and not page.is_visible("#settings"):
-            page.click("#sheet")
+        settings(page)
         page.select_option("#motors", motors)
-        found["stiffness"].append(page.inner_text("#stiffness") if page.is_visible("#stiffness") else "")
+        found["stiffness"].append(page.inner_text("#stiffness").replace("\n", " ") if page.is_visible("#stiffness") else "")
     page.focus("#omega")
     page.keyboard.press("ArrowRight")
-    found["stiffness"].append(page.inner_text("#stiffness"))
+    found["stiffness"].append(page.inner_text("#stiffness").replace("\n", " "))
     found["sheet"].append(page.is_visible("#settings"))
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("Escape")
@@ -166,4 +173,46 @@ def controls(page, job):
     return found
 
 
-serve({f.__name__: f for f in (first, missing, kept, loads, forces, ellipsoids, controls)})
+def plots(page, job):
+    """What every plot of a motion shows: ticks, cut spikes, curves on one another, colours."""
+    found = {"plots": page.evaluate("""() => mozzi.plots.map(({ figure, ticks, cut, merged, curves }) => ({
+      title: figure.querySelector("b").textContent, unit: figure.querySelector("small").textContent, ticks, cut,
+      on: merged.map(({ on }) => on), colours: curves.map(({ colour }) => colour),
+    }))""")}
+    ink = """(k) => {
+      const { canvas } = mozzi.plots[k];
+      const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
+      const draw = copy.getContext("2d", { willReadFrequently: true });
+      draw.drawImage(canvas, 0, 0);
+      return draw.getImageData(0, 0, copy.width, copy.height).data.reduce((sum, x) => sum + x, 0);
+    }"""
+    before = page.evaluate(ink, 0)
+    page.evaluate("document.querySelector('.patterns').click()")
+    return found | {"patterned": before != page.evaluate(ink, 0)}
+
+
+def fit(page, job):
+    """The report of an identification: its order, its colours in light and dark, its figures, its pages on paper."""
+    found = {"headings": page.eval_on_selector_all("h2", "(all) => all.map(({ textContent }) => textContent)")}
+    found["answer"] = page.inner_text(".answer")
+    found["first"] = page.evaluate("() => document.querySelector('main').firstElementChild.className")
+    found["open"] = page.eval_on_selector_all("details", "(all) => all.filter(({ open }) => open).length")
+    found["folded"] = page.eval_on_selector_all("details table", "(all) => all.length")
+    found["dots"] = page.evaluate("() => document.querySelectorAll('.forces svg g circle').length")
+    found["bars"] = page.evaluate("() => document.querySelectorAll('rect[fill=\"var(--c0)\"]').length")
+    ground = "() => [getComputedStyle(document.body).backgroundColor, getComputedStyle(document.querySelector('.forces svg > rect')).fill, getComputedStyle(document.querySelector('.forces svg text')).fill]"
+    found["grounds"], found["contrast"] = [], []
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        found["grounds"].append(page.evaluate(ground))
+        found["contrast"].append(least(page))
+    found["paper"] = page.evaluate("() => 0")
+    paper = page.pdf(format="A4")
+    found["paper"] = paper.count(b"/Type /Page") - paper.count(b"/Type /Pages")
+    page.emulate_media(media="print")
+    found["printed"] = page.eval_on_selector_all("h2", "(all) => all.filter((one) => one.checkVisibility()).map(({ textContent }) => textContent)")
+    page.emulate_media(media="screen")
+    return found
+
+
+serve({f.__name__: f for f in (first, missing, kept, loads, forces, ellipsoids, controls, plots, fit)})

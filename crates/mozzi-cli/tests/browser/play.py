@@ -196,10 +196,12 @@ def keyboard(page, job):
       .filter((one) => !(one.getAttribute("aria-label") || one.textContent.trim() || one.title || one.labels?.length))
       .map((one) => one.outerHTML.slice(0, 120))""")
     seen = []
-    page.evaluate("document.body.focus()")
+    page.click("#sheet")  # of a phone
+    page.evaluate("document.activeElement.blur()")
     for _ in range(120):
         page.keyboard.press("Tab")
         seen.append(page.evaluate("() => document.activeElement.id || document.activeElement.dataset.kind || document.activeElement.textContent.slice(0, 20)"))
+    page.keyboard.press("Escape")
     page.focus("#tab-joints")
     page.keyboard.press("ArrowRight")
     tab = page.evaluate("() => document.activeElement.id")

@@ -16,9 +16,7 @@ document.addEventListener("DOMContentLoaded", () => {
 });"""
 
 
-def contrast(page):
-    """The least contrast of text with its ground, in both themes."""
-    least = """() => {
+LEAST = """() => {
       const channel = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
       const light = ([r, g, b]) => 0.2126 * channel(r / 255) + 0.7152 * channel(g / 255) + 0.0722 * channel(b / 255);
       const probe = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
@@ -45,10 +43,18 @@ def contrast(page):
       }
       return found;
     }"""
-    found = [page.evaluate(least)]
+
+
+def least(page):
+    """The least contrast of text with its ground."""
+    return page.evaluate(LEAST)
+
+
+def contrast(page):
+    """The same in both themes of the pages."""
+    found = [least(page)]
     page.keyboard.press("d")
-    found.append(page.evaluate(least))
-    return found
+    return [*found, least(page)]
 
 
 def visit(browser, job, do):

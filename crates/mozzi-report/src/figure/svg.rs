@@ -55,6 +55,17 @@ impl Figure {
         )
     }
 
+    /// The same with the colours of a page's style sheet, `--c0` to `--c9`, `--panel`, `--text`, `--line`: for light and
+    /// dark.
+    pub fn svg_of_page(&self) -> String {
+        let colors = PALETTE.iter().enumerate().map(|(k, color)| (*color, format!("var(--c{k})")));
+        let grounds = [("#ffffff", "panel"), ("#222", "text"), ("#333", "muted"), ("#e3e6ea", "line")];
+        let grounds = grounds.into_iter().map(|(color, name)| (color, format!("var(--{name})")));
+        colors
+            .chain(grounds)
+            .fold(self.svg(), |text, (color, name)| text.replace(&format!("\"{color}\""), &format!("\"{name}\"")))
+    }
+
     /// The names of all panels' curves, once each; returns the legend's end.
     fn legend(&self, out: &mut String, top: f64) -> f64 {
         let mut names: Vec<&Curve> = Vec::new();
@@ -182,7 +193,7 @@ fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve, on: usize) {
         if matches!(curve.stroke, Stroke::Marked | Stroke::Links | Stroke::Rings) {
             let _ = write!(marks, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.8\"/>");
         } else if curve.stroke == Stroke::Dots {
-            let _ = write!(marks, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"1.1\"/>");
+            let _ = write!(marks, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"1.9\"/>");
         }
         last = Some([x, y]);
     }
@@ -200,7 +211,7 @@ fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve, on: usize) {
         Stroke::Links => "stroke-width=\"3\" stroke-linecap=\"round\"".to_string(),
     };
     if curve.stroke == Stroke::Dots {
-        let _ = writeln!(out, "<g fill=\"{color}\">{marks}</g>");
+        let _ = writeln!(out, "<g fill=\"{color}\" fill-opacity=\"0.45\">{marks}</g>");
         return;
     }
     if curve.stroke == Stroke::Rings {
