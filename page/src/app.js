@@ -405,7 +405,7 @@ export class App {
   async share() {
     const { entry, state, settings } = this;
     const robot = entry.isDropped ? { name: entry.name, file: entry.file, files: entry.files } : { name: entry.name };
-    const link = await linkOf({ robot, values: this.values, description: this.description, theta: state.theta, dtheta: state.dtheta, settings, frame: this.stage.frame });
+    const link = await linkOf({ robot, values: this.values, description: this.description, theta: state.theta, dtheta: state.dtheta, settings, frame: this.stage.frame, ...(this.lesson ? { answers: this.lesson.given } : {}) });
     history.replaceState(null, "", link);
     await this.copy(link, entry.isDropped && entry.meshes.length > 0 ? "The link is copied; meshes are not in it." : "The link is copied.");
     return link;

@@ -8,6 +8,7 @@ import { Grab } from "./grab.js";
 import { Hover } from "./hover.js";
 import { JointPanel } from "./jointpanel.js";
 import { KINDS } from "./kinds.js";
+import { Lesson } from "./lesson.js";
 import { Library } from "./library.js";
 import { Loop } from "./loop.js";
 import { fillPlayHelp } from "./playhelp.js";
@@ -31,7 +32,7 @@ const entries = data.robots.map((robot) => ({ ...robot, meshes: (robot.meshes ??
 
 const stage = new Stage(find("scene"), find("toggles"));
 const app = new App(library, stage, find, data.friction);
-const hosts = addTabs(find("tabs"), find("pages"), { joints: "Joints", numbers: "Numbers", plots: "Plots", edit: "Edit", code: "Code" }, () => app.robot && app.draw());
+const hosts = addTabs(find("tabs"), find("pages"), { ...(data.lesson ? { lesson: "Lesson" } : {}), joints: "Joints", numbers: "Numbers", plots: "Plots", edit: "Edit", code: "Code" }, () => app.robot && app.draw());
 app.loop = new Loop(app);
 app.record = new Record(hosts.plots, (time) => app.seek(time));
 app.quantities = new Quantities(hosts.numbers, app);
@@ -39,6 +40,9 @@ const joints = new JointPanel(hosts.joints, app);
 const editor = new EditPanel(hosts.edit, app);
 const code = new CodePanel(hosts.code, app);
 const between = (act) => () => !app.isBetween && act();
+const asked = new URLSearchParams(location.hash.slice(1));
+const linked = await stateOf(location.hash).catch(() => null);
+app.lesson = data.lesson && new Lesson(hosts.lesson, app, data.lesson, linked?.answers);
 app.panels = [
   { take: (robot) => joints.take(robot), update: between(() => joints.show(app.isPlaying && app.hasTarget ? app.settings.target : app.state.theta, app.state.dtheta)) },
   { take: (robot) => app.quantities.take(robot), update: between(() => app.quantities.update()) },
@@ -189,14 +193,17 @@ function addKeys() {
   });
 }
 
+if (app.lesson) {
+  app.panels.push({ take: () => {}, update: between(() => app.lesson.update()) });
+  stage.chosen = data.lesson.show;
+}
+
 async function start() {
   addFiles();
   addControls();
   addKeys();
-  const asked = new URLSearchParams(location.hash.slice(1));
   if (asked.has("theme")) theme.set(asked.get("theme"));
   else theme.apply();
-  const linked = await stateOf(location.hash).catch(() => null);
   let entry = entries[data.first ?? 0];
   if (linked) {
     const { name, files, file } = linked.robot;
@@ -211,6 +218,7 @@ async function start() {
     app.apply();
     app.refresh();
   }
+  app.lesson?.start();
   stage.scene.drawNow();
 }
 

@@ -2,6 +2,7 @@
 
 import { rows } from "./robot.js";
 import { colour } from "./theme.js";
+import { TorqueEllipse } from "./torque.js";
 import { hasSixRows, unitOf } from "./units.js";
 
 const FIRST = ["mass_matrix", "gravity_forces", "forward_kinematics"];
@@ -32,6 +33,12 @@ export class Quantities {
     this.none = host.appendChild(document.createElement("p"));
     Object.assign(this.none, { className: "note", hidden: true });
     this.none.setAttribute("role", "status");
+    this.ellipse = host.appendChild(document.createElement("details"));
+    this.ellipse.className = "quantity";
+    this.ellipse.appendChild(document.createElement("summary")).append(Object.assign(document.createElement("b"), { textContent: "torque ellipsoid" }),
+      Object.assign(document.createElement("small"), { textContent: "{Mθ̈ : ‖θ̈‖ = 1}, the torques that give accelerations of size 1" }));
+    this.torques = new TorqueEllipse(this.ellipse);
+    this.ellipse.addEventListener("toggle", () => this.update());
     this.list = host.appendChild(document.createElement("div"));
     this.entry = host.appendChild(document.createElement("p"));
     this.entry.id = "entry";
@@ -66,7 +73,8 @@ export class Quantities {
   filter() {
     const words = this.search.value.toLowerCase().split(/[\s_]+/).filter(Boolean);
     for (const { part, quantity } of this.parts.values()) part.hidden = !words.every((word) => this.text(quantity).includes(word));
-    const isEmpty = [...this.parts.values()].every(({ part }) => part.hidden);
+    this.ellipse.hidden = !words.every((word) => "torque torques ellipsoid ellipse mass matrix".includes(word));
+    const isEmpty = this.ellipse.hidden && [...this.parts.values()].every(({ part }) => part.hidden);
     this.none.hidden = !isEmpty;
     this.none.textContent = isEmpty ? `No quantity is found by “${this.search.value.trim()}”. Try torque, mass, Jacobian, energy, friction or derivative.` : "";
   }
@@ -84,6 +92,7 @@ export class Quantities {
   update() {
     if (!this.robot || this.host.hidden) return;
     for (const one of this.parts.values()) if (one.part.open && !one.part.hidden) this.fill(one);
+    if (this.ellipse.open && this.robot.n > 0) this.torques.show(this.robot, this.app.state.theta);
   }
 
   fill(one) {

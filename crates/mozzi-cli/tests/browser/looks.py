@@ -191,6 +191,44 @@ def plots(page, job):
     return found | {"patterned": before != page.evaluate(ink, 0)}
 
 
+def lesson(page, job):
+    """Every question wrong, then right; the ellipse at another pose; a link with the answers."""
+    found = {"tab": page.inner_text("#tabs [aria-selected=true]"), "title": page.inner_text("#page-lesson h2"), "said": []}
+    found["robot"] = page.evaluate("() => mozzi.app.robot.name")
+    parts = page.evaluate("() => mozzi.app.lesson.lesson.parts")
+    found["answers"] = [page.evaluate("(answer) => mozzi.app.lesson.expected(answer)", part["answer"]) for part in parts if "ask" in part]
+    before = page.evaluate("() => [...mozzi.state().theta]")
+    boxes = page.query_selector_all(".question")
+    questions = [part for part in parts if "ask" in part or "choose" in part]
+    numbers = iter(found["answers"])
+    for box, part in zip(boxes, questions):
+        said = []
+        if "ask" in part:
+            right = next(numbers)
+            for answer in (1.3 * right + 1, right):
+                box.query_selector("input").fill(f"{answer:.6g}")
+                box.query_selector("button").click()
+                said.append(box.query_selector("p").inner_text())
+        else:
+            for k in ((part["right"] + 1) % len(part["options"]), part["right"]):
+                box.query_selector_all("input")[k].check()
+                said.append(box.query_selector("p").inner_text())
+        found["said"].append(said)
+    found["score"] = page.inner_text("#page-lesson > .note")
+    found["stays"] = before == page.evaluate("() => [...mozzi.state().theta]")
+    if job.get("theta"):
+        page.evaluate("(theta) => mozzi.app.setTheta(theta)", job["theta"])
+        found["ellipse"] = page.evaluate("() => mozzi.app.lesson.ellipses[0].ellipse")
+        found["caption"] = page.inner_text("#page-lesson .torque figcaption")
+        link = page.evaluate("() => mozzi.app.share()")
+        other = page.context.browser.new_page()
+        other.goto(link)
+        other.evaluate("mozzi.ready.then(() => true)")
+        found["linked"] = [other.inner_text("#page-lesson > .note"), other.evaluate("() => [...mozzi.state().theta]")]
+        other.close()
+    return found
+
+
 def fit(page, job):
     """The report of an identification: its order, its colours in light and dark, its figures, its pages on paper."""
     found = {"headings": page.eval_on_selector_all("h2", "(all) => all.map(({ textContent }) => textContent)")}
@@ -215,4 +253,4 @@ def fit(page, job):
     return found
 
 
-serve({f.__name__: f for f in (first, missing, kept, loads, forces, ellipsoids, controls, plots, fit)})
+serve({f.__name__: f for f in (first, missing, kept, loads, forces, ellipsoids, controls, plots, fit, lesson)})

@@ -27,5 +27,5 @@ th{font-weight:500;color:var(--muted)}th:first-child,td:first-child{text-align:l
 @media print{:root{--panel:#fff;--text:#000;--muted:#333;--line:#ccc;--good:#1d7a4f;--bad:#b3261e;--c0:#2f6fcb;--c1:#d96a26;\
 --c2:#2a8f63;--c3:#b83a5e;--c8:#555d66;--c9:#111}\
 body{font-size:9.5pt;line-height:1.3}header{padding:0 0 4px}main{padding:0}h2{margin:8px 0 2px;font-size:11pt}.answer{font-size:12pt}\
-details,.screen{display:none}ul.weak li:nth-child(n+6){display:none}section{break-inside:avoid}\
-.forces svg{max-height:118mm;margin:0 auto}.friction svg{max-height:52mm;margin:0 auto}table{font-size:8.5pt;margin:2px 0}}";
+details,.screen,li:nth-child(n+5),tr:nth-child(n+10){display:none}li{max-height:2.6em;overflow:hidden}section{break-inside:avoid}\
+figure{margin:2px 0}.forces svg{max-height:92mm}.friction svg{max-height:42mm}td,th{padding:0 8px}table{font-size:8.5pt;margin:2px 0}p{margin:2px 0}}";
