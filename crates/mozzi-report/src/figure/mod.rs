@@ -73,6 +73,25 @@ impl Curve {
     }
 }
 
+impl Figure {
+    /// The curves of another run, dashed, in the panels with the same labels; panels that this figure has not are added.
+    pub fn add_run(&mut self, name: &str, other: Figure) {
+        for panel in other.panels {
+            let labels = |panel: &Panel| [panel.x_label.clone(), panel.y_label.clone()];
+            let named = |curve: Curve| {
+                let stroke = if curve.stroke == Stroke::Line { Stroke::Dashed } else { curve.stroke };
+                let name = if curve.name.is_empty() { name.to_string() } else { format!("{}, {name}", curve.name) };
+                Curve { name, stroke, ..curve }
+            };
+            let curves: Vec<Curve> = panel.curves.iter().cloned().map(named).collect();
+            match self.panels.iter_mut().find(|known| labels(known) == labels(&panel)) {
+                Some(known) => known.curves.extend(curves),
+                None => self.panels.push(Panel { curves, ..panel }),
+            }
+        }
+    }
+}
+
 impl Panel {
     /// Lowest and highest of both coordinates, with a margin; over time without spikes, and the numbers of these.
     fn ranges(&self) -> ([[f64; 2]; 2], [Option<f64>; 2]) {
@@ -145,6 +164,19 @@ mod tests {
         let rings = Curve { name: "start".into(), stroke: Stroke::Rings, points: vec![[0.0, 1.0]], ..Curve::default() };
         let figure = Figure { panels: vec![Panel { curves: vec![rings], ..Panel::default() }], ..Figure::default() };
         assert!(figure.svg().contains(">start</text>"), "a mark is explained");
+    }
+
+    #[test]
+    fn a_second_run_is_dashed_in_the_same_panels() {
+        let mut figure = wave(Scale::Linear);
+        let mut other = wave(Scale::Linear);
+        other.panels.push(Panel { y_label: "τ [N m]".into(), ..Panel::default() });
+        figure.add_run("other.csv", other);
+        assert_eq!((figure.panels.len(), figure.panels[0].curves.len()), (2, 4));
+        let added = &figure.panels[0].curves[2];
+        assert_eq!((added.name.as_str(), added.stroke), ("a & b, other.csv", Stroke::Dashed));
+        assert_eq!(added.points, figure.panels[0].curves[0].points);
+        assert!(figure.svg().contains("a &amp; b, other.csv") && figure.svg().contains("stroke-dasharray=\"5 3\""));
     }
 
     #[test]
