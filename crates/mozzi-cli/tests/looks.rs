@@ -23,6 +23,15 @@ fn job(what: &str, page: &Path, width: u64, more: Value) -> Value {
     job
 }
 
+/// The browser; none, which is said, where there is none.
+fn program() -> Option<(PathBuf, PathBuf)> {
+    let found = browser();
+    if let Err(why) = &found {
+        println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed");
+    }
+    found.ok()
+}
+
 /// What a script finds: no message on the console, nothing fetched, no wider than the screen, and text that is read in
 /// light and dark.
 fn look(program: &(PathBuf, PathBuf), jobs: Vec<Value>) -> Vec<Value> {
@@ -65,10 +74,7 @@ fn meshes() -> String {
 
 #[test]
 fn the_first_look_explains_itself() {
-    let program = match browser() {
-        Ok(program) => program,
-        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
-    };
+    let Some(program) = program() else { return };
     let folder = folder("looks_first");
     let play = page(&folder, "play", &["play"]);
     let lies = folder.join("arm/meshes");
@@ -132,10 +138,7 @@ fn the_first_look_explains_itself() {
 
 #[test]
 fn forces_are_drawn_as_in_textbooks() {
-    let program = match browser() {
-        Ok(program) => program,
-        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
-    };
+    let Some(program) = program() else { return };
     let folder = folder("looks_forces");
     let (anymal, planar) =
         (page(&folder, "anymal", &["play", "anymal"]), page(&folder, "planar", &["play", "two_link_planar"]));
@@ -193,10 +196,7 @@ fn forces_are_drawn_as_in_textbooks() {
 
 #[test]
 fn controls_say_what_they_do() {
-    let program = match browser() {
-        Ok(program) => program,
-        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
-    };
+    let Some(program) = program() else { return };
     let folder = folder("looks_controls");
     let (ur5, snake) = (page(&folder, "ur5", &["play", "ur5"]), page(&folder, "panda", &["play", "panda"]));
     let found = look(
@@ -252,10 +252,7 @@ fn apart(a: &str, b: &str) -> f64 {
 
 #[test]
 fn plots_have_numbers_and_cut_what_hides_the_rest() {
-    let program = match browser() {
-        Ok(program) => program,
-        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
-    };
+    let Some(program) = program() else { return };
     let folder = folder("looks_plots");
     // twelve joints of a quadruped that never turn, but for one acceleration of an impact
     let mut table = String::from("t");
@@ -307,10 +304,7 @@ fn plots_have_numbers_and_cut_what_hides_the_rest() {
 
 #[test]
 fn the_fit_report_answers_first() {
-    let program = match browser() {
-        Ok(program) => program,
-        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
-    };
+    let Some(program) = program() else { return };
     let folder = folder("looks_fit");
     let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
     let (way, log, report) = (path("way.csv"), path("log.csv"), path("fit.html"));
@@ -362,10 +356,7 @@ fn a_lesson_runs_in_class() {
     assert!(code == 1 && said.contains("--lesson is `9.9`, expected one of 8.1, 8.2"), "{said}");
     let (code, said) = common::complaint(&["play", "ur5", "--lesson", "8.1", "--out", "never.html"]);
     assert!(code == 1 && said.contains("has a robot and a start of its own"), "{said}");
-    let program = match browser() {
-        Ok(program) => program,
-        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
-    };
+    let Some(program) = program() else { return };
     let folder = folder("looks_lesson");
     let theta = [0.4, 1.1];
     let mut jobs = Vec::new();
