@@ -1,6 +1,6 @@
 // The playground: one robot at a state, with what changes it. Panels and the scene show it.
 
-import { addShapesNote } from "./notes.js";
+import { aboutRobot, counted } from "./words.js";
 import { History } from "./history.js";
 import { linkOf } from "./share.js";
 import { alike, farthest } from "./robot.js";
@@ -79,7 +79,7 @@ export class App {
 
   // Opens the robot of an entry, { name, files, file, meshes }, at its start or at a state, with values of xacro's arguments. False if
   // its files are wrong.
-  async open(entry, { description = null, theta = null, dtheta = null, values = entry === this.entry ? this.values : {} } = {}) {
+  async open(entry, { description = null, theta = null, dtheta = null, values = entry === this.entry ? this.values : {}, isNew = false } = {}) {
     this.pause();
     let robot;
     try {
@@ -92,7 +92,7 @@ export class App {
     this.original = this.entry === entry && this.original && description ? this.original : JSON.stringify(robot.description);
     this.settings.target = null;
     const last = this.robot;
-    const isAlike = last && this.entry === entry && this.values === values && alike(last, robot);
+    const isAlike = !isNew && last && this.entry === entry && this.values === values && alike(last, robot);
     // edits keep the arguments of their file
     robot.declared ??= this.entry === entry && this.values === values ? last.declared : [];
     Object.assign(this, { robot, entry, values, description: description ?? null });
@@ -107,14 +107,16 @@ export class App {
     if (robot.constraints.length > 0 && !fits) this.quietly(() => command(robot, { do: "close" }));
     this.state.theta = read(robot, "theta");
     this.begin = { theta: [...this.state.theta], dtheta: [...this.state.dtheta] };
-    this.stage.weight = 9.81 * command(robot, { do: "inertias" }).links.reduce((sum, { mass }) => sum + mass, 0);
+    const mass = command(robot, { do: "inertias" }).links.reduce((sum, { mass }) => sum + mass, 0);
+    this.stage.weight = 9.81 * mass;
+    let meshes = null;
     if (isAlike) {
       robot.shapes = last.shapes;
       this.stage.replace(robot);
       this.omitted = this.omitted ?? [];
     } else {
-      this.omitted = [...robot.notes, ...(await this.stage.show(robot, entry.meshes ?? [], this.state.theta))];
-      if (this.robot !== robot) return true;
+      meshes = this.stage.show(robot, entry.meshes ?? [], this.state.theta);
+      this.omitted = [...robot.notes, ...meshes.missing];
       this.stage.setFrame(robot.endEffector ?? farthest(robot));
     }
     if (last) closeRobot(last);
@@ -125,11 +127,33 @@ export class App {
     this.refresh();
     if (!isAlike) this.stage.look();
     this.stage.ground(this.settings.ground !== null);
-    this.say(`${robot.n} velocities, ${robot.bodies.length - 1} moving links${robot.warnings.length > 0 ? `, ${robot.warnings.length} warnings: see ?` : ""}`);
-    // shapes that the ground does not touch are drawn all the same
-    addShapesNote(this.find("hint"), this.omitted.filter((note) => !robot.notes.includes(note)));
-    this.fillNotes?.();
+    this.say(`${aboutRobot(robot, mass)}${robot.warnings.length > 0 ? `; ${counted(robot.warnings.length, "warning", "warnings")}: see ?` : ""}`);
+    this.stage.scene.drawNow();
+    this.firstPicture ??= performance.now();
+    if (meshes) await this.readMeshes(meshes);
+    this.note();
     return true;
+  }
+
+  // After the first picture: the meshes, and the view of all of them.
+  async readMeshes({ read }) {
+    const { robot } = this;
+    const failures = await read((count, all) => this.robot === robot && this.note(`${count} of ${all} meshes`));
+    if (this.robot !== robot) return;
+    this.omitted.push(...failures);
+    this.draw();
+    this.stage.look();
+    this.stage.ground(this.settings.ground !== null);
+  }
+
+  // Below the scene: how far the meshes are, or what is missing; shapes that the ground does not touch are drawn all the same.
+  note(progress = "") {
+    const { find, stage, robot, omitted } = this;
+    const others = omitted.length - stage.missing - omitted.filter((note) => robot.notes.includes(note)).length;
+    const lost = stage.missing > 0 ? `${counted(stage.missing, "mesh was", "meshes were")} not found` : "";
+    find("hint").textContent = progress || lost || (others > 0 ? `${counted(others, "shape was", "shapes were")} left out: see ?` : "");
+    find("missing").hidden = progress !== "" || lost === "";
+    this.fillNotes?.();
   }
 
   quietly(act) {
@@ -145,6 +169,8 @@ export class App {
     find("motors").value = settings.motors;
     find("motors").querySelector('[value="computed-torque"]').disabled = robot.isFloating;
     find("omega").value = settings.omega;
+    find("omega-value").textContent = `${settings.omega} rad/s`;
+    find("stiffness").hidden = !this.hasTarget;
     find("ground").checked = settings.ground !== null;
     find("floating").checked = robot.isFloating;
   }
@@ -379,7 +405,7 @@ export class App {
   async share() {
     const { entry, state, settings } = this;
     const robot = entry.isDropped ? { name: entry.name, file: entry.file, files: entry.files } : { name: entry.name };
-    const link = await linkOf({ robot, values: this.values, description: this.description, theta: state.theta, dtheta: state.dtheta, settings, frame: this.stage.frame });
+    const link = await linkOf({ robot, values: this.values, description: this.description, theta: state.theta, dtheta: state.dtheta, settings, frame: this.stage.frame, ...(this.lesson ? { answers: this.lesson.given } : {}) });
     history.replaceState(null, "", link);
     await this.copy(link, entry.isDropped && entry.meshes.length > 0 ? "The link is copied; meshes are not in it." : "The link is copied.");
     return link;

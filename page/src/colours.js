@@ -1,9 +1,9 @@
-// One colour for each series, told apart on light and on dark ground: hues of equal lightness, spread by the golden angle from the
-// ninth on.
+// One colour for each series, told apart on light and on dark ground, and lines for readers who see few colours: dashes tell them apart.
 
-const FEW = ["#3b7dd8", "#e07b39", "#2f9e6e", "#c9486a", "#8a63d2", "#b8962e", "#1f9bb0", "#d264b6"];
+const COLOURS = ["#3b7dd8", "#e07b39", "#2f9e6e", "#c9486a", "#8a63d2", "#9d9a16", "#0fb0b4", "#d867bb", "#8c5a3c", "#6b7684"];
+const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
 
-export function seriesColour(k, count) {
-  if (count <= FEW.length) return FEW[k];
-  return `hsl(${((210 + k * 137.508) % 360).toFixed(0)}, 55%, 52%)`;
-}
+export const seriesColour = (k) => COLOURS[k % COLOURS.length];
+
+// From the eleventh on colours come again, with other dashes; `isPatterned`: neighbours differ by dashes, too.
+export const dashes = (k, isPatterned) => DASHES[(Math.floor(k / COLOURS.length) + (isPatterned ? k : 0)) % DASHES.length];

@@ -1,11 +1,11 @@
-// Contact points, the forces that the robot applies to planes there, and the cones of friction; what happened to the contacts.
+// Contact points, the forces there, by the plane on the robot or by the robot on the plane, and the cones of friction; what happened to the
+// contacts.
 
 import * as THREE from "three";
 import { seriesColour } from "./colours.js";
 import { KINDS } from "./kinds.js";
 import { add, dot, fromRows, norm, scaled, turned } from "./vectors.js";
 import { Arrow, paint } from "./marks.js";
-import { short } from "./plots.js";
 
 export const SLIDES = "#f2740d";
 const AWAY = "#8b95a1";
@@ -73,6 +73,8 @@ export class ContactMarks {
   constructor(contacts, layer, reach) {
     this.contacts = contacts;
     this.usual = usualForce(contacts);
+    // the robot's force on the plane, or the plane's on the robot
+    this.isApplied = false;
     // metres per newton
     this.scale = this.usual > 0 ? (0.3 * reach) / this.usual : 0;
     const colour = KINDS.contacts.colour;
@@ -88,6 +90,10 @@ export class ContactMarks {
     });
   }
 
+  get side() {
+    return this.isApplied ? 1 : -1;
+  }
+
   update({ touch }) {
     this.marks.forEach(({ point, cone, arrow }, k) => {
       const { mu, plane } = this.contacts.pairs[k];
@@ -97,8 +103,8 @@ export class ContactMarks {
       const colour = used > ON_SURFACE ? SLIDES : KINDS.contacts.colour;
       point.position.set(...at);
       point.material.color.set(normal > 0 ? colour : AWAY);
-      cone.set(at, inward(pose), normal * this.scale, colour);
-      arrow.set(at, scaled(force, this.scale));
+      cone.set(at, scaled(inward(pose), this.side), normal * this.scale, colour);
+      arrow.set(at, scaled(force, this.side * this.scale));
       arrow.children.forEach(({ material }) => material.color.set(colour));
     });
   }
@@ -108,7 +114,7 @@ export class ContactMarks {
     return this.contacts.pairs.flatMap(({ plane }, k) => {
       const [at, force] = [touch.points, touch.forces].map((list) => list.slice(3 * k, 3 * k + 3));
       const length = Math.min(norm(force), 2 * this.usual) * this.scale;
-      return length > 0 ? [at, add(at, scaled(inward(touch.planes[plane]), 1.1 * length))] : [];
+      return length > 0 ? [at, add(at, scaled(inward(touch.planes[plane]), 1.1 * this.side * length))] : [];
     });
   }
 
@@ -160,16 +166,12 @@ export function contactPlots(contacts) {
   const carrying = of.filter(({ sum }) => sum > 0);
   if (carrying.length === 0) return [];
   const shown = carrying.length > most ? [...carrying].sort((a, b) => b.sum - a.sum).slice(0, most) : carrying;
-  const curves = (key) => shown.map((curve, k) => ({ name: curve.name, colour: seriesColour(k, shown.length), values: curve[key] }));
+  const curves = (key) => shown.map((curve, k) => ({ name: curve.name, colour: seriesColour(k), values: curve[key] }));
   const marks = contacts.events.map(({ t, change }) => ({ t, colour: EVENT_COLOURS[change] }));
   const legend = shown.length <= 8;
-  const cut = 3 * usualForce(contacts);
-  const peak = shown.reduce((top, { normal }) => normal.reduce((a, b) => Math.max(a, b), top), 0);
-  const isCut = peak > cut;
-  const above = isCut ? `, cut below ${short(peak)}` : "";
   const left = carrying.length > most ? `, ${most} of ${carrying.length}` : "";
   return [
-    { title: "contact f_n", unit: `N on planes${above}${left}`, legend, marks, top: isCut ? cut : null, curves: curves("normal") },
+    { title: "contact f_n", unit: `N on planes${left}`, legend, marks, curves: curves("normal") },
     { title: "friction used", unit: "‖f_t‖ / μ f_n, 1 slides", legend, marks, curves: curves("used") },
   ];
 }

@@ -28,13 +28,15 @@ export async function dropped(transfer) {
   return found;
 }
 
+export const meshesIn = (list) => list.filter(({ path }) => MESH.test(path));
+
 export const chosen = (list) => [...list].map((file) => ({ path: file.webkitRelativePath || file.name, file }));
 
 // The robots among files, the likeliest first: { name, file, files, meshes }.
 export async function robotsOf(list) {
   const texts = {};
   for (const { path, file } of list) if (TEXT.test(path) && file.size < MOST) texts[path] = await file.text();
-  const meshes = list.filter(({ path }) => MESH.test(path));
+  const meshes = meshesIn(list);
   // of JSON any file may be a robot if it stands alone
   const isRobot = (path) =>
     /\.json$/i.test(path) ? list.length === 1 || /"links"\s*:/.test(texts[path]) : /<(robot|mujoco)[\s>]/.test(texts[path]);

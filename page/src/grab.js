@@ -1,12 +1,13 @@
 // The pointer on the robot: drags a joint or the end effector while the simulation is paused, pushes while it runs.
 
 import * as THREE from "three";
+import { Picker } from "./pick.js";
 
 export class Grab {
   constructor(app) {
     this.app = app;
-    this.ray = new THREE.Raycaster();
-    const canvas = app.stage.scene.renderer.domElement;
+    this.picker = new Picker(app.stage);
+    const { canvas } = this.picker;
     this.canvas = canvas;
     // before the camera's own listeners
     canvas.addEventListener("pointerdown", (event) => this.begin(event), { capture: true });
@@ -14,34 +15,12 @@ export class Grab {
     for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, () => this.end());
   }
 
-  aim(event) {
-    const { left, top, width, height } = this.canvas.getBoundingClientRect();
-    const { camera } = this.app.stage.scene;
-    this.ray.setFromCamera(new THREE.Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height), camera);
-  }
-
-  // The body under the pointer, and the point.
-  hit() {
-    const { scene, robot, shapes, skeleton, shown } = this.app.stage;
-    const visible = [...(shown.shapes ? shapes : []), ...(shown.skeleton ? skeleton : [])];
-    scene.world.updateMatrixWorld();
-    for (const { object, point } of this.ray.intersectObjects(visible, true)) {
-      for (let group = object; group; group = group.parent) {
-        const body = scene.bodies.indexOf(group);
-        if (body >= 0) return { body, point };
-        const frame = scene.frames.indexOf(group);
-        if (frame >= 0) return { body: robot.frames[frame].body, point };
-      }
-    }
-    return null;
-  }
-
   begin(event) {
     if (event.button !== 0 || this.held) return;
     const { app } = this;
     const { robot, scene } = app.stage;
-    this.aim(event);
-    const hit = this.hit();
+    this.picker.aim(event);
+    const hit = this.picker.hit();
     if (!hit || (hit.body === 0 && !robot.isFloating)) return;
     const { name, frame } = robot.bodies[hit.body];
     if (frame === null) return;
@@ -58,8 +37,8 @@ export class Grab {
 
   move(event) {
     if (!this.held) return;
-    this.aim(event);
-    const at = this.ray.ray.intersectPlane(this.plane, new THREE.Vector3());
+    this.picker.aim(event);
+    const at = this.picker.ray.ray.intersectPlane(this.plane, new THREE.Vector3());
     if (!at) return;
     const { app, held } = this;
     const goal = at.toArray();

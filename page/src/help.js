@@ -3,6 +3,11 @@
 import { KINDS } from "./kinds.js";
 
 export function fillHelp(dialog, hasMotion, notes) {
+  // first of all, so that the page opens at its beginning
+  const close = dialog.appendChild(document.createElement("button"));
+  close.className = "close";
+  close.textContent = "Close";
+  close.addEventListener("click", () => dialog.close());
   const heading = (text) => {
     dialog.appendChild(document.createElement("h2")).textContent = text;
   };
@@ -30,7 +35,4 @@ export function fillHelp(dialog, hasMotion, notes) {
   }
   const credit = "Made and computed by mozzi, which is in this file as WebAssembly; drawn with three.js, whose licence stands at the top of this file. Nothing here was fetched from a network.";
   dialog.appendChild(document.createElement("p")).textContent = credit;
-  const close = dialog.appendChild(document.createElement("button"));
-  close.textContent = "Close";
-  close.addEventListener("click", () => dialog.close());
 }

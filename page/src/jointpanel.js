@@ -16,7 +16,7 @@ export class JointPanel {
     this.addFrame();
     this.theta = [...app.state.theta];
     const sliders = host.appendChild(document.createElement("div"));
-    this.setAll = addSliders(sliders, robot, this.theta, (j) => app.stage.jointColour(j), (joint) => !this.isSilent && app.setTheta([...this.theta], joint));
+    this.setAll = addSliders(sliders, robot, this.theta, (j) => app.stage.jointColour(j), (joint) => !this.isSilent && app.setTheta([...this.theta], joint), (j) => app.stage.point(j));
     this.addVelocities();
   }
 
@@ -38,6 +38,7 @@ export class JointPanel {
     nudges.className = "nudges";
     nudges.setAttribute("role", "group");
     nudges.setAttribute("aria-label", "Move the end effector by inverse kinematics; push it while the simulation runs");
+    nudges.appendChild(document.createElement("span")).textContent = "tool, 1 cm";
     for (const [text, ...along] of STEPS) {
       const button = nudges.appendChild(document.createElement("button"));
       button.textContent = text;

@@ -29,3 +29,7 @@ export function randomPose(robot) {
   }
   return robot.configuration(x);
 }
+
+// Of each velocity whether it is a length's: of a free joint the last three.
+export const slidingOf = (robot) =>
+  robot.allJoints.flatMap((joint) => Array.from({ length: velocitiesOf(joint) }, (_, k) => slides(joint) || k > 2));

@@ -5,21 +5,27 @@ import { seriesColour } from "./colours.js";
 import { lastEvent } from "./contacts.js";
 import { plotsOf } from "./curves.js";
 import { readMotion, readRobot, stateAt } from "./data.js";
+import { floorHeight } from "./floor.js";
 import { fillHelp } from "./help.js";
 import { randomPose } from "./joints.js";
-import { KINDS } from "./kinds.js";
+import { KINDS, usualKinds } from "./kinds.js";
 import { onKeys } from "./keys.js";
+import { Hover } from "./hover.js";
 import { Library } from "./library.js";
 import { MatrixPicture } from "./matrix.js";
 import { Overlays } from "./overlays.js";
 import { Player, SPEEDS } from "./player.js";
-import { Plot, short } from "./plots.js";
+import { Plot, patternSwitch } from "./plots.js";
 import { farthest } from "./robot.js";
 import { Scene } from "./scene.js";
 import { addShapes, seeThrough } from "./shapes.js";
 import { addSkeleton } from "./skeleton.js";
 import { addSliders } from "./sliders.js";
+import { scales, showScales } from "./scales.js";
 import { startTheme } from "./theme.js";
+import { fillToggles } from "./toggles.js";
+import { unitOf } from "./units.js";
+import { aboutRobot, counted } from "./words.js";
 
 const find = (id) => document.getElementById(id);
 // For the console, and for tests: `ready` comes when the page can be used.
@@ -34,19 +40,20 @@ const library = await Library.open(find("wasm").textContent).catch((error) => {
 const robot = readRobot(library, raw);
 const motion = readMotion(raw.motion, robot);
 const asked = new URLSearchParams(location.hash.slice(1)); // #t=1.2&show=axes,twists&theme=dark
-const jointColour = (j) => seriesColour(j, robot.n);
+const jointColour = (j) => seriesColour(j);
 
 const still = () => ({ theta: [...robot.start], dtheta: null, ddtheta: null, tip: null, loops: null });
 let state = motion ? stateAt(motion, motion.t[0]) : still();
 
 find("name").textContent = robot.name;
-find("about").textContent = motion ? motion.title : `${robot.n} velocities, ${robot.bodies.length - 1} moving links`;
+const mass = raw.robot.links.reduce((sum, { G }) => sum + G[3][3], 0);
+find("about").textContent = [motion?.title, aboutRobot(robot, mass)].filter(Boolean).join("; ");
 
 const scene = new Scene(find("scene"), robot);
 const reach = reachOf();
 const overlays = new Overlays(robot, scene, reach, jointColour, motion?.contacts);
 const skeleton = addSkeleton(robot, scene, reach, jointColour);
-const matrix = new MatrixPicture(find("matrix"), robot.velocities);
+const matrix = new MatrixPicture(find("matrix"), robot.velocities, unitOf({ of: "robot" }, { name: "M", shape: [robot.n, robot.n], unit: "kg m², kg m or kg" }, robot));
 const plots = [];
 
 // How far frames are from the base: what all marks are scaled by.
@@ -73,15 +80,19 @@ function place() {
   hint();
 }
 
-// Below the scene: what was left out, the scale of contact forces, what last happened to contacts.
+// Meshes that were not found, of the notes of mozzi-report.
+const lost = raw.notes.reduce((sum, note) => sum + (note.startsWith("mesh ") ? 1 : Number(/^(\d+) meshes:/.exec(note)?.[1] ?? 0)), 0);
+
+// Below the scene: how far the meshes are, what was left out, the scale of contact forces, what last happened to contacts.
 let omitted = 0;
+let progress = "";
 function hint() {
-  const said = [failure, omitted > 0 ? `${omitted} shapes were left out: see ?` : ""];
+  const said = [failure, progress, lost > 0 ? `${counted(lost, "mesh was", "meshes were")} not found: see ?` :
+    omitted > 0 ? `${counted(omitted, "shape was", "shapes were")} left out: see ?` : ""];
   if (motion?.contacts && shown.contacts) {
-    const usual = overlays.touches.usual;
-    if (usual > 0) said.push(`contacts: forces that the robot applies to planes, ${short(usual)} N is drawn ${short(0.3 * reach)} m long`);
     said.push(lastEvent(motion.contacts, state.time));
   }
+  showScales(find("scales"), scales(overlays, shown, overlays.touches?.scale ?? 0));
   find("hint").textContent = said.filter((text) => text !== "").join("\n");
 }
 
@@ -96,11 +107,10 @@ const possible = {
   wrenches: robot.constraints.length > 0 ? Boolean(motion?.loops) : !motion || Boolean(motion.dtheta && motion.ddtheta),
   constraints: robot.constraints.length > 0,
   contacts: Boolean(motion?.contacts),
+  applied: Boolean(motion?.contacts),
   path: Boolean(motion),
   mass: robot.n > 0,
 };
-const buttons = {};
-
 function show(kind, isOn) {
   shown[kind] = isOn;
   buttons[kind]?.setAttribute("aria-pressed", String(isOn));
@@ -113,17 +123,7 @@ function show(kind, isOn) {
   place();
 }
 
-for (const [kind, { name, key, colour, about }] of Object.entries(KINDS)) {
-  if (possible[kind] === false) continue;
-  const button = find("toggles").appendChild(document.createElement("button"));
-  button.appendChild(document.createElement("i"));
-  button.append(name);
-  button.style.setProperty("--colour", colour);
-  button.title = `${about} (${key.toUpperCase()})`;
-  button.dataset.kind = kind;
-  button.addEventListener("click", () => show(kind, !shown[kind]));
-  buttons[kind] = button;
-}
+const buttons = fillToggles(find("toggles"), (kind) => possible[kind] !== false, (kind) => show(kind, !shown[kind]));
 
 function row() {
   const div = find("panel").appendChild(document.createElement("div"));
@@ -169,6 +169,7 @@ function addPlots() {
     });
     chip.set = set;
   });
+  find("panel").appendChild(Object.assign(document.createElement("div"), { className: "chips" })).append(patternSwitch(() => plots));
   for (const plot of described) plots.push(new Plot(find("panel"), { ...plot, t: motion.t, seek: (time) => player.seek(time) }));
 }
 
@@ -206,8 +207,11 @@ function addTransport() {
   });
 }
 
-// Of the robot's shapes, or of its skeleton, where it is now.
-const bounds = () => scene.bounds(layers.visual.length + layers.collision.length > 0 ? [...layers.visual, ...layers.collision] : skeleton);
+// Of the robot's shapes, and of its skeleton where that stands for missing ones, where it is now.
+function bounds() {
+  const all = [...layers.visual, ...layers.collision];
+  return scene.bounds([...all, ...(shown.skeleton || all.length === 0 ? skeleton : [])]);
+}
 
 // All of the robot in sight: where it is now, and of a bolted one wherever the motion takes it.
 function look() {
@@ -249,6 +253,13 @@ const theme = startTheme(find("theme"), () => {
 });
 
 let setJoints = null;
+// What the pointer meets: see Hover.
+const view = {
+  robot, scene, overlays, host: find("scene"),
+  get parts() {
+    return [...(shown.shapes ? [...layers.visual, ...layers.collision] : []), ...(shown.skeleton ? skeleton : [])];
+  },
+};
 
 async function start() {
   if (asked.has("theme")) theme.set(asked.get("theme"));
@@ -258,35 +269,45 @@ async function start() {
     addPlots();
     addTransport();
   } else {
-    setJoints = addSliders(find("panel"), robot, state.theta, jointColour, place);
+    setJoints = addSliders(find("panel"), robot, state.theta, jointColour, place, (j) => overlays.point(j));
   }
   overlays.measure(motion ? some(60) : randomStates(30));
-  const read = await addShapes(robot, raw.meshes, scene);
-  layers = read.layers;
-  const notes = [...raw.notes, ...read.failures];
-  fillHelp(find("about-page"), Boolean(motion), notes);
-  find("help").addEventListener("click", () => find("about-page").showModal());
-  find("picture").addEventListener("click", savePicture);
-  omitted = notes.length;
   onKeys({ player, player_speed: find("speed"), loop: find("loop"), theme, look, savePicture, help: find("about-page"), motion,
     toggle: (kind) => buttons[kind] && show(kind, !shown[kind]) });
-
-  const hasShapes = layers.visual.length + layers.collision.length > 0;
-  const usual = hasShapes ? ["shapes", "contacts", "mass"] : ["skeleton", "axes", "masses", "contacts", "mass"];
-  const first = asked.has("show") ? asked.get("show").split(",") : usual;
-  for (const kind of Object.keys(KINDS)) show(kind, first.includes(kind) && possible[kind] !== false);
-  place();
-  look();
-  const bottom = bounds().min.z;
-  scene.ground(reach, motion?.contacts ? motion.contacts.planes.map(({ velocity }, k) => ({ pose: state.touch.planes[k], velocity })) :
-    [{ height: robot.isFloating || bottom < -0.15 * reach ? bottom : 0 }]);
+  find("help").addEventListener("click", () => find("about-page").showModal());
+  find("picture").addEventListener("click", savePicture);
+  new Hover(view);
+  const { layers: added, waiting, load } = addShapes(robot, raw.meshes, scene);
+  layers = added;
+  showFirst(waiting === 0);
   if (motion) player.seek(asked.has("t") ? Number(asked.get("t")) : motion.t[0]);
+  scene.drawNow();
+  window.mozzi.firstPicture = performance.now();
+  const failures = await load((count, all) => {
+    progress = count < all ? `${count} of ${all} meshes` : "";
+    hint();
+  });
+  const notes = [...raw.notes, ...failures];
+  omitted = notes.length;
+  fillHelp(find("about-page"), Boolean(motion), notes);
+  if (waiting > 0) showFirst(true);
   place();
   scene.drawNow();
 }
 
+// What is shown before and after the meshes are there, all of it in sight, on the ground.
+function showFirst(isLoaded) {
+  const hasShapes = layers.visual.length + layers.collision.length > 0;
+  const first = asked.has("show") ? asked.get("show").split(",") : usualKinds(robot, hasShapes && isLoaded && lost === 0, hasShapes);
+  for (const kind of Object.keys(KINDS)) show(kind, first.includes(kind) && possible[kind] !== false);
+  place();
+  look();
+  scene.ground(reach, motion?.contacts ? motion.contacts.planes.map(({ velocity }, k) => ({ pose: state.touch.planes[k], velocity })) :
+    [{ height: floorHeight(robot, bounds().min.z, reach) }]);
+}
+
 Object.assign(window.mozzi, {
-  robot, motion, overlays, show, library,
+  robot, motion, overlays, plots, show, library,
   seek: (time) => player.seek(time),
   setTheta: (theta) => setJoints(theta),
   state: () => state,

@@ -3,13 +3,16 @@
 import { short } from "./plots.js";
 import { colour } from "./theme.js";
 
+// More diagonal entries are not listed.
+const MOST = 9;
+
 const mixed = (a, b, part) => a.map((x, k) => Math.round(x + part * (b[k] - x)));
 const channels = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
 
 export class MatrixPicture {
-  constructor(figure, names) {
+  constructor(figure, names, unit) {
     [this.canvas, this.caption] = [figure.querySelector("canvas"), figure.querySelector("figcaption")];
-    [this.figure, this.names, this.at] = [figure, names, null];
+    [this.figure, this.names, this.unit, this.at] = [figure, names, unit, null];
     figure.hidden = false;
     this.canvas.addEventListener("pointermove", (event) => this.look(event));
     this.canvas.addEventListener("pointerdown", (event) => this.look(event));
@@ -59,10 +62,12 @@ export class MatrixPicture {
 
   say() {
     if (!this.at || !this.M) {
-      this.caption.textContent = "M(θ): kg m², kg m, kg";
+      // its diagonal: the inertia that each joint moves
+      const own = this.names.length <= MOST ? this.names.map((name, k) => `${name}: ${short(this.M?.[k][k] ?? 0)}`) : [`${this.names.length} × ${this.names.length}`];
+      this.caption.replaceChildren(...[`M(θ), ${this.unit}`, ...own].map((text) => Object.assign(document.createElement("div"), { textContent: text })));
       return;
     }
     const [i, j] = this.at;
-    this.caption.textContent = `${this.names[i]}, ${this.names[j]}: ${short(this.M[i][j])}`;
+    this.caption.textContent = `M(θ), ${this.unit}: ${this.names[i]}, ${this.names[j]}: ${short(this.M[i][j])}`;
   }
 }

@@ -7,12 +7,14 @@ import { Arrow, Ellipsoid, massMark, triad } from "./marks.js";
 import { rows } from "./robot.js";
 import { add, fromRows, norm, scaled } from "./vectors.js";
 
-// A velocity of 1 m/s by ‖θ̇‖ = 1 is drawn a quarter of a metre long; forces so that both ellipsoids are of the robot's size.
+// A velocity of 1 m/s by ‖θ̇‖ = 1 is drawn a quarter of a metre long, or shorter: ellipsoids are no longer than this of the robot; forces so
+// that both ellipsoids are of the robot's size.
 const DRAWN = 0.25;
+const MOST = 0.6;
 
 export class Overlays {
   constructor(robot, scene, reach, jointColour, contacts) {
-    Object.assign(this, { robot, scene, reach, pairs: contacts?.pairs ?? [] });
+    Object.assign(this, { robot, scene, reach, jointColour, pairs: contacts?.pairs ?? [], axes: [] });
     this.layers = Object.fromEntries(Object.keys(KINDS).map((kind) => [kind, new THREE.Group()]));
     for (const layer of Object.values(this.layers)) {
       layer.visible = false;
@@ -36,12 +38,14 @@ export class Overlays {
     this.carried = robot.constraints.map(() => this.put("constraints", new Arrow(KINDS.constraints.colour, thickness)));
     this.touches = contacts && new ContactMarks(contacts, this.layers.contacts, reach);
     this.longest = { carried: 1, spin: 1, speed: 1, moment: 1, force: 1 };
+    // metres of 1 m/s and of 1 N in the ellipsoids
+    this.drawn = { velocity: 0, force: 0, isCut: false };
   }
 
   // Takes what is not in a body's or a frame's group out of the scene.
   remove() {
     for (const layer of Object.values(this.layers)) layer.removeFromParent();
-    for (const object of [...Object.values(this.attached).flat(), this.tipTriad]) object?.removeFromParent();
+    for (const object of [...Object.values(this.attached).flat(), ...this.axes, this.tipTriad]) object?.removeFromParent();
   }
 
   put(kind, object) {
@@ -70,7 +74,7 @@ export class Overlays {
       mark.position.set(...body.center);
       attach("masses", k, mark);
       const ellipsoid = new Ellipsoid(KINDS.inertia.colour);
-      ellipsoid.set(body.center, body.ellipsoid.axes.map((vector, i) => ({ vector, length: body.ellipsoid.lengths[i] })));
+      ellipsoid.set(body.center, body.ellipsoid.axes.map((vector, i) => ({ vector, length: Math.min(body.ellipsoid.lengths[i], MOST * reach) })));
       attach("inertia", k, new THREE.Group().add(ellipsoid));
     });
   }
@@ -96,9 +100,27 @@ export class Overlays {
   }
 
   show(kind, isOn) {
+    if (kind === "applied" && this.touches) this.touches.isApplied = isOn;
     this.layers[kind].visible = isOn;
     this.attached[kind].forEach((object) => (object.visible = isOn));
     if (kind === "frames" && this.tipTriad) this.tipTriad.visible = isOn;
+  }
+
+  // The axes of some velocities, drawn thick: of the joint under the pointer, of an entry of a matrix.
+  point(velocities) {
+    const key = velocities.join();
+    if (key === this.pointed) return;
+    this.pointed = key;
+    this.axes.forEach((axis) => axis.removeFromParent());
+    this.axes = [];
+    this.robot.bodies.forEach((body, k) => body.lines.forEach(({ point, direction }, i) => {
+      if (!velocities.includes(body.j + (body.lines.length > 1 ? i : 0))) return;
+      const axis = new Arrow(this.jointColour(body.j + i), 0.012 * this.reach);
+      axis.set(add(point, scaled(direction, -0.2 * this.reach)), scaled(direction, 0.46 * this.reach));
+      this.scene.bodies[k].add(axis);
+      this.axes.push(axis);
+    }));
+    this.scene.draw();
   }
 
   // The frame whose ellipsoids and path are meant.
@@ -182,9 +204,12 @@ export class Overlays {
   ellipsoids(theta) {
     const at = fromRows(this.robot.compute({ quantity: "forward_kinematics", frame: this.frame.name }, { theta }).T).p;
     const principal = this.singularValues(theta);
-    const most = 1.5 * this.reach;
-    this.manipulability.set(at, principal.map(({ vector, sigma }) => ({ vector, length: DRAWN * sigma })));
-    const force = (sigma) => Math.min((DRAWN * this.reach ** 2) / 4 / Math.max(sigma, 1e-9), most);
-    this.forceEllipsoid.set(at, principal.map(({ vector, sigma }) => ({ vector, length: force(sigma) })));
+    const most = MOST * this.reach;
+    const largest = Math.max(...principal.map(({ sigma }) => sigma));
+    this.drawn.velocity = Math.min(DRAWN, most / Math.max(largest, 1e-9));
+    this.drawn.force = (DRAWN * this.reach ** 2) / 4;
+    this.drawn.isCut = principal.some(({ sigma }) => this.drawn.force > most * sigma);
+    this.manipulability.set(at, principal.map(({ vector, sigma }) => ({ vector, length: this.drawn.velocity * sigma })));
+    this.forceEllipsoid.set(at, principal.map(({ vector, sigma }) => ({ vector, length: Math.min(this.drawn.force / Math.max(sigma, 1e-9), most) })));
   }
 }

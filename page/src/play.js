@@ -3,10 +3,12 @@
 import { App } from "./app.js";
 import { CodePanel } from "./codepanel.js";
 import { EditPanel } from "./editpanel.js";
-import { chosen, dropped, robotsOf } from "./files.js";
+import { chosen, dropped, meshesIn, robotsOf } from "./files.js";
 import { Grab } from "./grab.js";
+import { Hover } from "./hover.js";
 import { JointPanel } from "./jointpanel.js";
 import { KINDS } from "./kinds.js";
+import { Lesson } from "./lesson.js";
 import { Library } from "./library.js";
 import { Loop } from "./loop.js";
 import { fillPlayHelp } from "./playhelp.js";
@@ -30,7 +32,7 @@ const entries = data.robots.map((robot) => ({ ...robot, meshes: (robot.meshes ??
 
 const stage = new Stage(find("scene"), find("toggles"));
 const app = new App(library, stage, find, data.friction);
-const hosts = addTabs(find("tabs"), find("pages"), { joints: "Joints", numbers: "Numbers", plots: "Plots", edit: "Edit", code: "Code" }, () => app.robot && app.draw());
+const hosts = addTabs(find("tabs"), find("pages"), { ...(data.lesson ? { lesson: "Lesson" } : {}), joints: "Joints", numbers: "Numbers", plots: "Plots", edit: "Edit", code: "Code" }, () => app.robot && app.draw());
 app.loop = new Loop(app);
 app.record = new Record(hosts.plots, (time) => app.seek(time));
 app.quantities = new Quantities(hosts.numbers, app);
@@ -38,6 +40,9 @@ const joints = new JointPanel(hosts.joints, app);
 const editor = new EditPanel(hosts.edit, app);
 const code = new CodePanel(hosts.code, app);
 const between = (act) => () => !app.isBetween && act();
+const asked = new URLSearchParams(location.hash.slice(1));
+const linked = await stateOf(location.hash).catch(() => null);
+app.lesson = data.lesson && new Lesson(hosts.lesson, app, data.lesson, linked?.answers);
 app.panels = [
   { take: (robot) => joints.take(robot), update: between(() => joints.show(app.isPlaying && app.hasTarget ? app.settings.target : app.state.theta, app.state.dtheta)) },
   { take: (robot) => app.quantities.take(robot), update: between(() => app.quantities.update()) },
@@ -63,14 +68,24 @@ async function openEntry(entry, more) {
   const isFirst = !app.robot;
   if (!isFirst) app.remember();
   const done = await app.open(entry, more);
-  if (done && !app.grabbed) app.grabbed = new Grab(app);
+  if (done && !app.grabbed) [app.grabbed, app.hover] = [new Grab(app), new Hover(stage)];
   showEntries();
   return done;
 }
 
+// Meshes without a robot are those of the robot that is shown.
+async function addMeshes(list) {
+  const { entry, description, values, state } = app;
+  entry.meshes = [...list, ...(entry.meshes ?? [])];
+  const { theta, dtheta } = state;
+  return app.open(entry, { description, values, theta, dtheta, isNew: true });
+}
+
 // Robots of dropped or chosen files join the menu; the likeliest is opened.
-async function openFiles(list) {
-  const found = await robotsOf(list);
+async function openFiles(list, isForMeshes = false) {
+  const meshes = meshesIn(list);
+  const found = isForMeshes && meshes.length > 0 ? [] : await robotsOf(list);
+  if (found.length === 0 && meshes.length > 0 && app.robot) return addMeshes(meshes);
   if (found.length === 0) {
     app.trouble("No robot is among these files", "Expected a file of URDF, xacro, MJCF or mozzi's JSON; meshes may come with it, as files or in folders.");
     return false;
@@ -83,15 +98,24 @@ async function openFiles(list) {
 }
 
 function addFiles() {
+  let isForMeshes = false;
   find("robot").addEventListener("change", () => openEntry(entries[find("robot").value]));
   for (const [button, input] of [["open", "files"], ["folder", "folders"]]) {
-    find(button).addEventListener("click", () => find(input).click());
+    find(button).addEventListener("click", () => {
+      isForMeshes = false;
+      find(input).click();
+    });
     find(input).addEventListener("change", async () => {
       const list = chosen(find(input).files);
       find(input).value = "";
-      if (list.length > 0) await openFiles(list);
+      if (list.length > 0) await openFiles(list, isForMeshes);
+      isForMeshes = false;
     });
   }
+  find("missing").addEventListener("click", () => {
+    isForMeshes = true;
+    find("folders").click();
+  });
   let depth = 0;
   const show = (isOver) => (find("drop").hidden = !isOver);
   addEventListener("dragenter", (event) => {
@@ -119,8 +143,20 @@ function addControls() {
   find("motors").addEventListener("change", () => {
     app.settings.target = null;
     set({ motors: find("motors").value });
+    app.showControls();
   });
-  find("omega").addEventListener("input", () => set({ omega: find("omega").valueAsNumber }));
+  find("omega").addEventListener("input", () => {
+    set({ omega: find("omega").valueAsNumber });
+    app.showControls();
+  });
+  // on a phone the settings are a sheet
+  const sheet = (isOpen) => {
+    find("settings").classList.toggle("open", isOpen);
+    find("sheet").setAttribute("aria-expanded", String(isOpen));
+  };
+  find("sheet").addEventListener("click", () => sheet(find("sheet").getAttribute("aria-expanded") !== "true"));
+  document.addEventListener("pointerdown", (event) => !event.target.closest("#settings, #sheet") && sheet(false));
+  app.closeSheet = () => sheet(false);
   find("ground").addEventListener("change", () => app.setGround(find("ground").checked));
   find("floating").addEventListener("change", async () => {
     await app.edit({ what: find("floating").checked ? "floating" : "fixed" });
@@ -138,7 +174,7 @@ function addKeys() {
   const kinds = Object.fromEntries(Object.entries(KINDS).map(([kind, { key }]) => [key, kind]));
   const acts = {
     " ": () => find("play").click(), Home: () => app.reset(), 0: () => stage.look(), d: () => theme.toggle(), p: () => app.savePicture(),
-    o: () => find("open").click(), "?": () => find("about-page").showModal(), Escape: () => app.clearTrouble(),
+    o: () => find("open").click(), "?": () => find("about-page").showModal(), Escape: () => [app.clearTrouble(), app.closeSheet()],
   };
   document.addEventListener("keydown", (event) => {
     const { tagName, type } = event.target;
@@ -157,14 +193,17 @@ function addKeys() {
   });
 }
 
+if (app.lesson) {
+  app.panels.push({ take: () => {}, update: between(() => app.lesson.update()) });
+  stage.chosen = data.lesson.show;
+}
+
 async function start() {
   addFiles();
   addControls();
   addKeys();
-  const asked = new URLSearchParams(location.hash.slice(1));
   if (asked.has("theme")) theme.set(asked.get("theme"));
   else theme.apply();
-  const linked = await stateOf(location.hash).catch(() => null);
   let entry = entries[data.first ?? 0];
   if (linked) {
     const { name, files, file } = linked.robot;
@@ -179,6 +218,7 @@ async function start() {
     app.apply();
     app.refresh();
   }
+  app.lesson?.start();
   stage.scene.drawNow();
 }
 

@@ -13,6 +13,11 @@ const KEYS = [["space", "play or pause"], ["Home", "back to the start"], ["Ctrl-
 
 export function fillPlayHelp(dialog, notes) {
   dialog.replaceChildren();
+  // first of all, so that the page opens at its beginning
+  const close = dialog.appendChild(document.createElement("button"));
+  close.className = "close";
+  close.textContent = "Close";
+  close.addEventListener("click", () => dialog.close());
   const heading = (text) => (dialog.appendChild(document.createElement("h2")).textContent = text);
   const list = (pairs) => {
     const dl = dialog.appendChild(document.createElement("dl"));
@@ -33,7 +38,4 @@ export function fillPlayHelp(dialog, notes) {
   list(Object.values(KINDS).map(({ key, name, about }) => [`${name} (${key})`, about]));
   const credit = "Computed by mozzi, which is in this file as WebAssembly; drawn with three.js, whose licence is at the top of this file. Nothing is fetched from a network, and nothing is sent.";
   dialog.appendChild(document.createElement("p")).textContent = credit;
-  const close = dialog.appendChild(document.createElement("button"));
-  close.textContent = "Close";
-  close.addEventListener("click", () => dialog.close());
 }

@@ -1,17 +1,20 @@
 // Curves over time, with a cursor that scrubs.
 
+import { dashes } from "./colours.js";
 import { colour } from "./theme.js";
 
 const MARGIN = { left: 46, right: 8, top: 6, bottom: 16 };
 
-// Round numbers in a range, about so many.
+// Round numbers in a range, about so many, at least two.
 export function ticks(low, high, about) {
-  const raw = (high - low) / about;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((size) => size >= raw);
-  const list = [];
-  for (let k = Math.ceil(low / step); k * step <= high; k++) list.push(k * step);
-  return { list, step };
+  for (;; about *= 1.5) {
+    const raw = (high - low) / about;
+    const power = 10 ** Math.floor(Math.log10(raw));
+    const step = [1, 2, 5, 10].map((k) => k * power).find((size) => size >= raw * (1 - 1e-9));
+    const list = [];
+    for (let k = Math.ceil(low / step); k * step <= high; k++) list.push(k * step);
+    if (list.length > 1 || about > 60) return { list, step };
+  }
 }
 
 export function short(x, step = Math.abs(x) / 100) {
@@ -20,23 +23,67 @@ export function short(x, step = Math.abs(x) / 100) {
   return x.toFixed(Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 5));
 }
 
-// Lowest and highest of the curves, with air.
-function range(curves) {
+// Numbers of the curves that are looked at for their usual range.
+const LOOKED_AT = 20_000;
+
+// What is drawn of the curves, with air: of impacts, which would dwarf all else, the part up to the range of 99 % of the numbers. `cut`: the
+// lowest and the highest number where they are beyond.
+export function range(curves) {
   let [low, high] = [Infinity, -Infinity];
+  const some = [];
+  const step = Math.max(Math.ceil(curves.reduce((sum, { values }) => sum + values.length, 0) / LOOKED_AT), 1);
   for (const { values } of curves)
-    for (const x of values)
-      if (Number.isFinite(x)) [low, high] = [Math.min(low, x), Math.max(high, x)];
-  if (low > high) return [-1, 1];
+    values.forEach((x, k) => {
+      if (!Number.isFinite(x)) return;
+      [low, high] = [Math.min(low, x), Math.max(high, x)];
+      if (k % step === 0) some.push(x);
+    });
+  if (low > high) return { low: -1, high: 1, cut: [null, null] };
+  some.sort((a, b) => a - b);
+  const [from, to] = [0.005, 0.995].map((part) => some[Math.round(part * (some.length - 1))]);
+  const usual = to - from;
+  const cut = [usual > 0 && low < from - 2 * usual ? low : null, usual > 0 && high > to + 2 * usual ? high : null];
+  if (cut[0] !== null) low = from - 0.25 * usual;
+  if (cut[1] !== null) high = to + 0.25 * usual;
   const air = high > low ? 0.06 * (high - low) : Math.abs(low) * 0.1 || 1;
-  return [low - air, high + air];
+  return { low: low - air, high: high + air, cut };
+}
+
+// Curves that differ by less than a line's width lie on one another: each { curve, on }, `on` the number of curves before that it lies on.
+export function merged(curves, size) {
+  const kept = [];
+  for (const curve of curves) {
+    const same = ({ curve: { values } }) => values.every((x, k) => Math.abs(x - curve.values[k]) <= 2e-3 * size);
+    kept.push({ curve, on: kept.filter(same).length });
+  }
+  return kept;
+}
+
+// A switch for line patterns in these plots.
+export function patternSwitch(plots) {
+  const button = document.createElement("button");
+  button.append(document.createElement("i"), "line patterns");
+  button.title = "Lines differ by dashes, too, for readers who see few colours";
+  button.className = "patterns";
+  button.setAttribute("aria-pressed", String(Plot.isPatterned));
+  button.addEventListener("click", () => {
+    Plot.isPatterned = !Plot.isPatterned;
+    button.setAttribute("aria-pressed", String(Plot.isPatterned));
+    plots().forEach((plot) => plot.redraw());
+  });
+  return button;
 }
 
 export class Plot {
+  // Are neighbours told apart by dashes, too?
+  static isPatterned = false;
+
   // `curves`: { name, joint, colour, values }, one value for each time; `joint` is the joint's name, if it is of one. `marks`: { t, colour },
-  // events. `top`: what is above is cut off.
-  constructor(host, { title, unit, t, curves, seek, legend, marks = [], top = null }) {
+  // events.
+  constructor(host, { title, unit, t, curves, seek, legend, marks = [] }) {
     const figure = document.createElement("figure");
-    Object.assign(this, { t, curves, legend, marks, top, figure, hidden: new Set() });
+    Object.assign(this, { t, legend, marks, figure, hidden: new Set() });
+    this.curves = curves.map((curve, index) => Object.assign(curve, { index }));
     figure.className = "plot";
     const caption = figure.appendChild(document.createElement("figcaption"));
     caption.appendChild(document.createElement("b")).textContent = title;
@@ -86,8 +133,7 @@ export class Plot {
     for (const canvas of [this.canvas, this.still]) [canvas.width, canvas.height] = [width * scale, height * scale];
     const draw = this.still.getContext("2d");
     draw.scale(scale, scale);
-    const [lowest, highest] = range(this.shown);
-    const [low, high] = this.top === null ? [lowest, highest] : [-0.06 * this.top, this.top];
+    const { low, high, cut } = range(this.shown);
     const [start, end] = [this.t[0], this.t.at(-1)];
     const box = { x: MARGIN.left, y: MARGIN.top, w: width - MARGIN.left - MARGIN.right, h: height - MARGIN.top - MARGIN.bottom };
     this.x = (t) => box.x + (end > start ? (t - start) / (end - start) : 0.5) * box.w;
@@ -95,6 +141,7 @@ export class Plot {
     draw.font = "10.5px system-ui, sans-serif";
     draw.lineWidth = 1;
     const [up, along] = [ticks(low, high, 3), end > start ? ticks(start, end, Math.max(box.w / 90, 2)) : { list: [start], step: 1 }];
+    this.ticks = { up: up.list, along: along.list };
     for (const value of up.list) {
       draw.strokeStyle = colour(Math.abs(value) < 1e-9 * up.step ? "grid-axis" : "line");
       draw.beginPath();
@@ -124,17 +171,47 @@ export class Plot {
     draw.globalAlpha = 1;
     draw.lineJoin = "round";
     draw.lineWidth = this.shown.length > 12 ? 1 : 1.5;
-    for (const { values, colour: stroke } of this.shown) {
+    // of several on one another the later ones are dashes on the first
+    this.merged = this.shown.length <= 40 ? merged(this.shown, high - low) : this.shown.map((curve) => ({ curve, on: 0 }));
+    for (const { curve: { values, colour: stroke, index }, on } of this.merged) {
       draw.strokeStyle = stroke;
+      draw.setLineDash(on > 0 ? [7, 7 * on] : dashes(index, Plot.isPatterned));
       draw.beginPath();
       this.line(draw, values, y, box.w);
       draw.stroke();
     }
+    draw.setLineDash([]);
     draw.restore();
+    this.cut = cut;
+    cut.forEach((peak, side) => peak !== null && this.peaks(draw, box, side, side === 0 ? low : high, peak));
     this.y = y;
     const letters = this.legend ? Math.max(...this.curves.map(({ name }) => name.length)) : 0;
     this.room = Math.floor(this.readout.clientWidth / (50 + 6 * letters));
     this.cursor(this.time);
+  }
+
+  // Where curves leave the picture: a mark at each highest point beyond, and the number of the highest of all.
+  peaks(draw, { x, y, w, h }, side, limit, peak) {
+    const beyond = (value) => (side === 1 ? value > limit : value < limit);
+    const [edge, inside] = side === 1 ? [y, 5] : [y + h, -5];
+    let last = -Infinity;
+    for (const { values, colour: fill } of this.shown) {
+      for (let k = 0; k < values.length; k++) {
+        if (!beyond(values[k]) || this.x(this.t[k]) - last < 6) continue;
+        last = this.x(this.t[k]);
+        draw.fillStyle = fill;
+        draw.beginPath();
+        draw.moveTo(last, edge);
+        draw.lineTo(last - 4, edge + inside);
+        draw.lineTo(last + 4, edge + inside);
+        draw.fill();
+      }
+      last = -Infinity;
+    }
+    draw.fillStyle = colour("text");
+    draw.textAlign = "right";
+    draw.textBaseline = side === 1 ? "top" : "bottom";
+    draw.fillText(`${side === 1 ? "▲" : "▼"} ${short(peak)}`, x + w, edge + 1.4 * inside);
   }
 
   // Of many points in one column of pixels, the first, the lowest, the highest and the last.

@@ -2,12 +2,22 @@
 
 import { rows } from "./robot.js";
 import { colour } from "./theme.js";
+import { TorqueEllipse } from "./torque.js";
+import { hasSixRows, unitOf } from "./units.js";
 
 const FIRST = ["mass_matrix", "gravity_forces", "forward_kinematics"];
 const SIX = ["ω_x", "ω_y", "ω_z", "v_x", "v_y", "v_z"];
 const WRENCH = ["m_x", "m_y", "m_z", "f_x", "f_y", "f_z"];
 // More columns are drawn as a picture.
 const TABLE = 12;
+
+// Other words for a quantity, by a part of its name.
+const WORDS = {
+  inverse_dynamics: "torques torque rnea newton euler", tip_forces: "torques torque load", gravity_forces: "torques torque weight", bias_forces: "torques torque nonlinear",
+  velocity_product: "torques torque coriolis centrifugal", joint_friction: "torques torque", spring_forces: "torques torque",
+  forward_dynamics: "accelerations aba torques torque", mass_matrix: "inertia crba", forward_kinematics: "pose position fk", frame_poses: "position fk",
+  jacobian: "velocity twist singular", kinetic_energy: "velocity", velocity_ellipsoid: "manipulability singular",
+};
 
 const label = (text) => text.replaceAll("_", " ");
 
@@ -20,6 +30,15 @@ export class Quantities {
     Object.assign(this.search, { type: "search", placeholder: "find a quantity" });
     this.search.setAttribute("aria-label", "Find a quantity");
     this.search.addEventListener("input", () => this.filter());
+    this.none = host.appendChild(document.createElement("p"));
+    Object.assign(this.none, { className: "note", hidden: true });
+    this.none.setAttribute("role", "status");
+    this.ellipse = host.appendChild(document.createElement("details"));
+    this.ellipse.className = "quantity";
+    this.ellipse.appendChild(document.createElement("summary")).append(Object.assign(document.createElement("b"), { textContent: "torque ellipsoid" }),
+      Object.assign(document.createElement("small"), { textContent: "{Mθ̈ : ‖θ̈‖ = 1}, the torques that give accelerations of size 1" }));
+    this.torques = new TorqueEllipse(this.ellipse);
+    this.ellipse.addEventListener("toggle", () => this.update());
     this.list = host.appendChild(document.createElement("div"));
     this.entry = host.appendChild(document.createElement("p"));
     this.entry.id = "entry";
@@ -53,10 +72,17 @@ export class Quantities {
 
   filter() {
     const words = this.search.value.toLowerCase().split(/[\s_]+/).filter(Boolean);
-    for (const { part, quantity } of this.parts.values()) {
-      const text = `${label(quantity.name)} ${quantity.formula}`.toLowerCase();
-      part.hidden = !words.every((word) => text.includes(word));
-    }
+    for (const { part, quantity } of this.parts.values()) part.hidden = !words.every((word) => this.text(quantity).includes(word));
+    this.ellipse.hidden = !words.every((word) => "torque torques ellipsoid ellipse mass matrix".includes(word));
+    const isEmpty = this.ellipse.hidden && [...this.parts.values()].every(({ part }) => part.hidden);
+    this.none.hidden = !isEmpty;
+    this.none.textContent = isEmpty ? `No quantity is found by “${this.search.value.trim()}”. Try torque, mass, Jacobian, energy, friction or derivative.` : "";
+  }
+
+  // What a quantity is found by: name, formula, other words.
+  text({ name, formula }) {
+    const others = Object.entries(WORDS).filter(([part]) => name.includes(part)).map(([, words]) => words);
+    return [label(name), formula, ...others].join(" ").toLowerCase();
   }
 
   request({ name, of }) {
@@ -66,6 +92,7 @@ export class Quantities {
   update() {
     if (!this.robot || this.host.hidden) return;
     for (const one of this.parts.values()) if (one.part.open && !one.part.hidden) this.fill(one);
+    if (this.ellipse.open && this.robot.n > 0) this.torques.show(this.robot, this.app.state.theta);
   }
 
   fill(one) {
@@ -85,7 +112,7 @@ export class Quantities {
       const of = request.frame ? `of the frame ${request.frame}; ` : "";
       about.textContent = problem || of + (one.quantity.inputs.length > 0 ? `of ${one.quantity.inputs.map((name) => this.symbol(name)).join(", ")}` : "");
       const { outputs } = found ? this.robot.prepared(JSON.stringify(request)) : { outputs: [] };
-      one.shown = outputs.map((output) => ({ name: output.name, show: this.table(one.body, output) }));
+      one.shown = outputs.map((output) => ({ name: output.name, show: this.table(one.body, one.quantity, { ...output, unit: unitOf(one.quantity, output, this.robot) }) }));
     }
     if (found) for (const { name, show } of one.shown) show(found[name]);
   }
@@ -95,25 +122,25 @@ export class Quantities {
   }
 
   // Names of the entries along an axis of this length, and the velocities that they are about.
-  names(length, name) {
+  names(length, name, isSix) {
     const { robot } = this;
-    if (length === robot.n && length !== 6) return robot.velocities;
+    if (isSix) return /^[fFwWhb]|^dh|wrench/.test(name) || name === "A" ? WRENCH : SIX;
     if (name === "theta" || (length === robot.nq && length !== robot.n)) return robot.positions;
     if (length === robot.n) return robot.velocities;
-    if (length === 6) return /^[fFwW]|wrench/.test(name) ? WRENCH : SIX;
+    if (length === 6) return SIX;
     if (length === 3) return ["x", "y", "z"];
     if (length === 4) return ["x", "y", "z", "1"];
     return Array.from({ length }, (_, k) => String(k + 1));
   }
 
   // A table or, of a large matrix, a picture; returned is what fills it.
-  table(host, { name, shape, unit }) {
+  table(host, quantity, { name, shape, unit }) {
     const box = host.appendChild(document.createElement("div"));
     box.className = "values-of";
     const [height, width] = shape.length === 2 ? shape : [shape[0] ?? 1, 1];
     if (shape.length > 2) return this.plain(box, name, shape, unit);
     const across = width > 1 ? this.names(width, name) : [""];
-    const down = shape.length === 0 ? [""] : this.names(height, name);
+    const down = shape.length === 0 ? [""] : this.names(height, name, hasSixRows(quantity, name, shape));
     if (width > TABLE || height * width > 400) return this.picture(box, { name, unit, down, across });
     const table = box.appendChild(document.createElement("table"));
     table.appendChild(document.createElement("caption")).textContent = unit ? `${name}, ${unit}` : name;

@@ -1,6 +1,7 @@
 // The motion since the last reset: rows for plots and for CSV.
 
-import { Plot } from "./plots.js";
+import { slidingOf } from "./joints.js";
+import { Plot, patternSwitch } from "./plots.js";
 
 const MOST = 60_000;
 // Seconds that the plots show.
@@ -11,6 +12,9 @@ export class Record {
     Object.assign(this, { host, seek, rows: [], plots: [] });
     this.numbers = host.appendChild(document.createElement("dl"));
     this.numbers.className = "energy";
+    const chips = host.appendChild(document.createElement("div"));
+    chips.className = "chips";
+    chips.append(patternSwitch(() => this.plots));
     this.place = host.appendChild(document.createElement("div"));
     this.note = host.appendChild(document.createElement("p"));
     this.note.className = "note";
@@ -32,12 +36,14 @@ export class Record {
     this.place.replaceChildren();
     const energy = [["kinetic", "#e07b39"], ["potential", "#3b7dd8"], ["total", "#2f9e6e"]];
     const of = (key) => (row) => row[key];
-    const joints = (key) => robot.velocities.map((name, j) => ({ name, colour: jointColour(j), of: (row) => row[key][j] }));
+    const sliding = slidingOf(robot);
+    const joints = (key, slides) => robot.velocities.map((name, j) => ({ name, j, colour: jointColour(j), of: (row) => row[key][j] })).filter(({ j }) => sliding[j] === slides);
+    const kinds = (title, key, units, more = "") => [false, true].map((slides, k) => ({ title, unit: units[k] + more, curves: joints(key, slides) })).filter(({ curves }) => curves.length > 0);
     this.described = [
       { title: "energy", unit: "J", legend: true, curves: energy.map(([name, colour]) => ({ name, colour, of: of(name) })) },
       { title: "drift", unit: "J, energy that the method made", curves: [{ name: "drift", colour: "#c9486a", of: of("drift") }] },
-      { title: "θ̇", unit: "rad/s or m/s", curves: joints("dtheta") },
-      { title: "τ", unit: "N m or N, of the motors", curves: joints("tau") },
+      ...kinds("θ̇", "dtheta", ["rad/s", "m/s"]),
+      ...kinds("τ", "tau", ["N m", "N"], ", of the motors"),
     ];
     this.plots = this.described.map(({ title, unit, legend, curves }) =>
       new Plot(this.place, { title, unit, legend, t: [0], curves: curves.map((curve) => ({ ...curve, values: [0] })), seek: this.seek }));

@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { colour } from "./theme.js";
+import { Floor } from "./floor.js";
 
 export const matrixOf = ({ R, p }) =>
   new THREE.Matrix4().set(R[0], R[1], R[2], p[0], R[3], R[4], R[5], p[1], R[6], R[7], R[8], p[2], 0, 0, 0, 1);
@@ -56,32 +56,33 @@ export class Scene {
     this.world.add(this.sky, this.sun, this.sun.target);
   }
 
-  // Grids and shadows on planes, each { pose, velocity }; without a pose a plane lies at a height and stays where it is.
+  // Floors on planes, each { pose, velocity }; without a pose a plane lies at a height and stays where it is. One alone reaches to the horizon.
   ground(size, planes) {
     [this.groundSize, this.planes] = [size, planes];
     for (const floor of this.floors ?? []) {
       this.world.remove(floor);
-      floor.traverse((part) => part.geometry?.dispose());
+      floor.dispose();
     }
     this.cell = 10 ** Math.floor(Math.log10(size / 2));
-    const cells = 2 * Math.ceil((2.2 * size) / this.cell);
-    const side = cells * this.cell;
-    this.floors = planes.map(({ pose, height }) => {
-      const grid = new THREE.GridHelper(side, cells, colour(pose ? "grid" : "grid-axis"), colour("grid"));
-      grid.rotation.x = Math.PI / 2;
-      grid.material.transparent = true;
-      grid.material.opacity = 0.7;
-      grid.material.depthWrite = false;
-      const shadow = new THREE.Mesh(new THREE.PlaneGeometry(side, side), new THREE.ShadowMaterial({ opacity: 0.28 }));
-      shadow.receiveShadow = true;
-      shadow.position.z = -1e-3 * size;
-      const floor = new THREE.Group().add(grid, shadow);
+    const near = 2 * Math.ceil((2.2 * size) / this.cell);
+    const cells = planes.length > 1 ? near : 30 * near;
+    this.floors = planes.map(({ pose, height }, k) => {
+      const floor = new Floor(this.cell, cells, near * this.cell, k);
       floor.position.z = (height ?? 0) - 1e-3 * size;
       floor.matrixAutoUpdate = !pose;
       this.world.add(floor);
       return floor;
     });
     this.placeSun(size);
+    this.uncover();
+  }
+
+  // A floor that hides a part of the robot lets it be seen.
+  uncover() {
+    for (const floor of this.floors ?? []) {
+      if (!floor.matrixAutoUpdate) continue;
+      floor.uncover([...this.frames, ...this.bodies].some(({ matrix }) => matrix.elements[14] < floor.position.z - 0.02 * this.groundSize));
+    }
   }
 
   // The planes of contacts, at a time: below the robot's base, by whole cells of their grids; a belt's grid moves with it.
@@ -119,13 +120,14 @@ export class Scene {
       this.camera.position.add(step);
     }
     this.followed.copy(base);
+    this.uncover();
     this.draw();
   }
 
   // The camera as near as it can be with all points in sight, from a corner a little above.
   fit(points) {
     const center = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());
-    const towards = new THREE.Vector3(1, -0.75, 0.42).normalize();
+    const towards = new THREE.Vector3(1, -0.75, 0.27).normalize();
     const right = new THREE.Vector3(0, 0, 1).cross(towards).normalize();
     const up = towards.clone().cross(right);
     const tall = Math.tan((this.camera.fov * Math.PI) / 360);
@@ -178,8 +180,14 @@ export class Scene {
     this.renderer.render(this.world, this.camera);
   }
 
+  // Of the robot and its shadow, the rest transparent.
   picture() {
+    const surfaces = (this.floors ?? []).map(({ surface }) => surface);
+    surfaces.forEach((surface) => (surface.visible = false));
     this.drawNow();
-    return this.renderer.domElement.toDataURL("image/png");
+    const picture = this.renderer.domElement.toDataURL("image/png");
+    surfaces.forEach((surface) => (surface.visible = true));
+    this.drawNow();
+    return picture;
   }
 }

@@ -70,36 +70,49 @@ function paint(object, colour, hasOwnColours) {
   return object;
 }
 
-// Adds the shapes to their frames, in two layers; answers what could not be read.
-export async function addShapes(robot, meshes, scene) {
+// Milliseconds of reading meshes between two pictures.
+const SLICE = 40;
+
+// Adds the shapes to their frames, in two layers: at once what needs no file. Answers the layers, the number of files to read, and what
+// reads them, picture by picture, as long as `isWanted`; that answers what could not be read.
+export function addShapes(robot, meshes, scene) {
   const layers = { visual: [], collision: [] };
-  const failures = [];
-  const files = new Map();
-  const file = (k) => {
-    if (!files.has(k)) files.set(k, meshes[k].bytes ? meshes[k].bytes() : unzipped(meshes[k].gzip));
-    return files.get(k);
-  };
-  for (const shape of robot.shapes) {
-    let object;
-    if (shape.kind === "mesh") {
-      const { format, name } = meshes[shape.mesh];
-      try {
-        object = paint(readers[format](await file(shape.mesh)), shape.color, format === "dae" && !shape.color);
-        object.scale.multiply(new THREE.Vector3(...shape.size));
-      } catch (error) {
-        failures.push(`${name}: ${error.message}`);
-        continue;
-      }
-    } else {
-      object = paint(new THREE.Mesh(primitive(shape)), shape.color, false);
-    }
+  const add = (shape, object) => {
     const holder = new THREE.Group().add(object);
     holder.matrixAutoUpdate = false;
     holder.matrix.copy(matrixOf(shape.T));
     scene.frames[shape.frame].add(holder);
     layers[shape.use].push(holder);
-  }
-  return { layers, failures };
+  };
+  const waiting = robot.shapes.filter(({ kind }) => kind === "mesh");
+  for (const shape of robot.shapes) if (shape.kind !== "mesh") add(shape, paint(new THREE.Mesh(primitive(shape)), shape.color, false));
+  const files = new Map();
+  const file = (k) => {
+    if (!files.has(k)) files.set(k, meshes[k].bytes ? meshes[k].bytes() : unzipped(meshes[k].gzip));
+    return files.get(k);
+  };
+  const load = async (onRead = () => {}, isWanted = () => true) => {
+    const failures = new Set();
+    let began = performance.now();
+    for (const [k, shape] of waiting.entries()) {
+      const { format, name } = meshes[shape.mesh];
+      try {
+        const content = await file(shape.mesh);
+        if (!isWanted()) return [];
+        const object = paint(readers[format](content), shape.color, format === "dae" && !shape.color);
+        object.scale.multiply(new THREE.Vector3(...shape.size));
+        add(shape, object);
+      } catch (error) {
+        failures.add(`${name}: ${error.message}`);
+      }
+      onRead(k + 1, waiting.length);
+      if (performance.now() - began < SLICE) continue;
+      await new Promise((next) => setTimeout(next));
+      began = performance.now();
+    }
+    return [...failures];
+  };
+  return { layers, waiting: waiting.length, load };
 }
 
 // Shapes that let what is inside be seen.

@@ -40,9 +40,17 @@ export function addSkeleton(robot, scene, reach, jointColour) {
   robot.bodies.forEach((body, k) => {
     if (k === 0) add(0, base(robot, r, metal));
     for (const end of ends(robot, k)) add(k, bone(body.point, end, 1.05 * r, 0.7 * r, metal));
-    if (k > 0) add(k, joint(body, r, metal, jointColour(body.j)));
+    if (k > 0) add(k, joint(body, r, metal, jointColour(body.j), before(robot, k)));
   });
   return parts;
+}
+
+// How many joints before this one turn about the same point: their drums would be in one place.
+function before(robot, k) {
+  const { parent, at } = robot.bodies[k];
+  if (parent === null || parent === 0) return 0;
+  const apart = Math.hypot(...at.map((x, i) => x - robot.bodies[parent].point[i]));
+  return apart < 1e-6 ? 1 + before(robot, parent) : 0;
 }
 
 const sphere = (radius, material) => new THREE.Mesh(new THREE.SphereGeometry(radius, 32, 20), material);
@@ -55,10 +63,12 @@ function base(robot, r, metal) {
 }
 
 // Nothing joins a free body to its parent: the sphere is the body's, as a floating base's.
-function joint(body, r, metal, colour) {
+function joint(body, r, metal, colour, inner) {
   if (body.kind === "free") return sphere(1.8 * r, metal);
   const paint = new THREE.MeshStandardMaterial({ color: new THREE.Color(colour), roughness: 0.45, metalness: 0.1 });
   const mesh = body.kind === "ball" ? sphere(2.1 * r, paint) : new THREE.Mesh(drumOrSlide(body.kind, r), paint);
+  // one within the other: thinner and longer
+  if (inner > 0 && body.kind === "revolute") mesh.scale.set(0.78 ** inner, 0.78 ** inner, 1.3 ** inner);
   mesh.position.set(...body.point);
   mesh.quaternion.setFromUnitVectors(Z, new THREE.Vector3(...body.lines[0].direction).normalize());
   return mesh;

@@ -2,10 +2,10 @@
 
 import { coordinates, positionsOf, randomPose, velocitiesOf } from "./joints.js";
 
-export function addSliders(host, robot, theta, jointColour, onChange) {
+export function addSliders(host, robot, theta, jointColour, onChange, onPoint = () => {}) {
   const row = host.appendChild(document.createElement("div"));
   row.className = "row";
-  const fields = robot.joints.map((joint) => slidersOf(host, robot, joint, theta, jointColour, onChange));
+  const fields = robot.joints.map((joint) => slidersOf(host, robot, joint, theta, jointColour, onChange, onPoint));
   const set = (values) => {
     values.forEach((value, k) => (theta[k] = value));
     fields.forEach((show) => show());
@@ -32,13 +32,13 @@ function addStates(row, states, set) {
 }
 
 // The fields of one joint, which set its positions in `theta`; returned is what shows them.
-function slidersOf(host, robot, joint, theta, jointColour, onChange) {
+function slidersOf(host, robot, joint, theta, jointColour, onChange, onPoint) {
   const own = () => robot.coordinates(theta).slice(joint.j, joint.j + velocitiesOf(joint));
   const values = own();
   const x = new Array(robot.n).fill(0);
   const fields = coordinates.names(joint).map((name, k) => {
     const isLength = coordinates.isLength(joint, k);
-    return field(host, { name, isLength, range: coordinates.range(joint, k), colour: jointColour(joint.j + k) }, (value) => {
+    return field(host, { name, isLength, range: coordinates.range(joint, k), colour: jointColour(joint.j + k), point: (isOn) => onPoint(isOn ? [joint.j + k] : []) }, (value) => {
       values[k] = value;
       values.forEach((value, i) => (x[joint.j + i] = value));
       robot.configuration(x).slice(joint.q, joint.q + positionsOf(joint)).forEach((value, i) => (theta[joint.q + i] = value));
@@ -51,10 +51,11 @@ function slidersOf(host, robot, joint, theta, jointColour, onChange) {
 }
 
 // A slider and a number that follow each other; returned is what sets both.
-function field(host, { name, isLength, range, colour }, take) {
+function field(host, { name, isLength, range, colour, point }, take) {
   const [low, high] = range;
   const div = host.appendChild(document.createElement("div"));
   div.className = "joint";
+  for (const [kind, isOn] of [["pointerenter", true], ["focusin", true], ["pointerleave", false], ["focusout", false]]) div.addEventListener(kind, () => point(isOn));
   const label = div.appendChild(document.createElement("label"));
   const mark = label.appendChild(document.createElement("i"));
   mark.style.setProperty("--colour", colour);

@@ -3,13 +3,16 @@
 import * as THREE from "three";
 import { seriesColour } from "./colours.js";
 import { meshesOf } from "./files.js";
-import { KINDS } from "./kinds.js";
+import { KINDS, usualKinds } from "./kinds.js";
 import { Arrow } from "./marks.js";
 import { Overlays } from "./overlays.js";
 import { Quality } from "./quality.js";
+import { floorHeight } from "./floor.js";
 import { Scene } from "./scene.js";
 import { addShapes, seeThrough } from "./shapes.js";
 import { addSkeleton } from "./skeleton.js";
+import { scales, showScales } from "./scales.js";
+import { fillToggles } from "./toggles.js";
 import { add, scaled } from "./vectors.js";
 
 const PUSH = "#d0433f";
@@ -17,35 +20,40 @@ const TOUCH = "#4f46e5";
 
 export class Stage {
   constructor(host, toggles) {
-    Object.assign(this, { host, toggles, shown: {}, buttons: {}, layers: { visual: [], collision: [] } });
+    Object.assign(this, { host, toggles, shown: {}, buttons: {}, hasGround: false, layers: { visual: [], collision: [] } });
+    this.captions = document.getElementById("scales");
     this.quality = new Quality(this);
   }
 
-  jointColour = (j) => seriesColour(j, this.robot.n);
+  jointColour = (j) => seriesColour(j);
 
-  // Shows a robot; `meshes` are those of its files. Answers what is left out.
-  async show(robot, meshes, theta) {
+  // Shows a robot, at first without meshes; `meshes` are those of its files. Answers the meshes that are missing, and what reads the others.
+  show(robot, meshes, theta) {
     this.robot = robot;
     this.overlays?.remove();
     if (this.scene) this.scene.setRobot(robot);
     else this.scene = new Scene(this.host, robot, { antialias: !this.quality.isSoftware, scale: this.quality.still });
-    this.layers = { visual: [], collision: [] };
     this.reach = this.reachOf(theta);
     this.addOverlays();
     this.skeleton = addSkeleton(robot, this.scene, this.reach, this.jointColour);
     this.marks?.forEach((mark) => mark.removeFromParent());
     this.push = new Arrow(PUSH, 0.009 * this.reach);
-    this.axes = [];
     this.touches = [];
     this.marks = [this.push];
     this.scene.world.add(this.push);
     this.push.visible = false;
     const found = meshesOf(robot.shapes, meshes);
-    const { layers, failures } = await addShapes({ ...robot, shapes: found.shapes }, found.meshes, this.scene);
-    if (this.robot !== robot) return [];
-    this.layers = layers;
+    const { layers, waiting, load } = addShapes({ ...robot, shapes: found.shapes }, found.meshes, this.scene);
+    Object.assign(this, { layers, waiting, missing: found.missing.length });
     this.addToggles();
-    return [...found.missing, ...failures];
+    const read = async (onRead) => {
+      const failures = await load(onRead, () => this.robot === robot);
+      if (this.robot !== robot) return [];
+      this.waiting = 0;
+      this.addToggles();
+      return failures;
+    };
+    return { missing: found.missing, read };
   }
 
   // An edit that leaves joints and frames where they are: shapes stay.
@@ -54,7 +62,7 @@ export class Stage {
     this.robot = robot;
     this.addOverlays();
     this.setFrame(this.frame);
-    this.addToggles();
+    this.addToggles(Object.keys(KINDS).filter((kind) => this.shown[kind]));
   }
 
   reachOf(theta) {
@@ -64,28 +72,28 @@ export class Stage {
     return Math.max(...far, ...frames, 0.05);
   }
 
+  // Of what is there: shapes, and the skeleton where it stands for missing ones.
+  get bounds() {
+    return this.scene.bounds([...this.shapes, ...(this.shown.skeleton || this.shapes.length === 0 ? this.skeleton : [])]);
+  }
+
+  // What the pointer can be on.
+  get parts() {
+    return [...(this.shown.shapes ? this.shapes : []), ...(this.shown.skeleton ? this.skeleton : [])];
+  }
+
   get shapes() {
     return [...this.layers.visual, ...this.layers.collision];
   }
 
-  addToggles() {
+  // `kept`: what is shown now, by an edit.
+  addToggles(kept = null) {
     const { robot, toggles } = this;
     // with loops also what they carry would have to be known
-    const possible = { wrenches: robot.constraints.length === 0, shapes: this.shapes.length > 0, glass: this.shapes.length > 0, constraints: robot.constraints.length > 0, path: false, mass: false };
-    const usual = possible.shapes ? ["shapes", "contacts"] : ["skeleton", "axes", "masses", "contacts"];
-    toggles.replaceChildren();
-    for (const [kind, { name, key, colour, about }] of Object.entries(KINDS)) {
-      if (possible[kind] === false) continue;
-      const button = toggles.appendChild(document.createElement("button"));
-      button.appendChild(document.createElement("i"));
-      button.append(name);
-      button.style.setProperty("--colour", colour);
-      button.title = `${about} (${key.toUpperCase()})`;
-      button.dataset.kind = kind;
-      button.addEventListener("click", () => this.toggle(kind, !this.shown[kind]));
-      this.buttons[kind] = button;
-    }
-    const chosen = this.chosen ?? usual;
+    const possible = { wrenches: robot.constraints.length === 0, shapes: this.shapes.length > 0, glass: this.shapes.length > 0, constraints: robot.constraints.length > 0, contacts: this.hasGround, applied: this.hasGround, path: false, mass: false };
+    const usual = usualKinds(robot, possible.shapes && this.waiting === 0 && this.missing === 0, possible.shapes);
+    this.buttons = fillToggles(toggles, (kind) => possible[kind] !== false, (kind) => this.toggle(kind, !this.shown[kind]));
+    const chosen = kept ?? (this.chosen && (possible.shapes || this.chosen.includes("skeleton")) && this.waiting + this.missing === 0 ? this.chosen : usual);
     for (const kind of Object.keys(KINDS)) this.toggle(kind, chosen.includes(kind) && possible[kind] !== false, false);
   }
 
@@ -117,6 +125,7 @@ export class Stage {
     this.push.visible = false;
     if (state.push) this.push.set(add(state.push.p, scaled(state.push.f, -this.lengthOf(state.push.f))), scaled(state.push.f, this.lengthOf(state.push.f)));
     this.placeTouches(this.shown.contacts ? state.touches ?? [] : []);
+    showScales(this.captions, scales(this.overlays, this.shown, this.lengthOf([1])));
   }
 
   // The wrenches that the robot applies: to the ground, and to the mouse.
@@ -160,29 +169,18 @@ export class Stage {
       this.marks.push(arrow);
     }
     this.touches.forEach((arrow, k) => {
-      if (k < touches.length) arrow.set(touches[k].p, scaled(touches[k].f, this.lengthOf(touches[k].f)));
+      if (k < touches.length) arrow.set(touches[k].p, scaled(touches[k].f, (this.shown.applied ? 1 : -1) * this.lengthOf(touches[k].f)));
       else arrow.visible = false;
     });
   }
 
   // The axes of some velocities, drawn thick: those that an entry of a matrix is about.
   point(velocities) {
-    this.axes.forEach((axis) => axis.removeFromParent());
-    this.axes = [];
-    this.robot.bodies.forEach((body, k) => {
-      body.lines.forEach(({ point, direction }, i) => {
-        if (!velocities.includes(body.j + (body.lines.length > 1 ? i : 0))) return;
-        const axis = new Arrow(this.jointColour(body.j + i), 0.012 * this.reach);
-        axis.set(add(point, scaled(direction, -0.2 * this.reach)), scaled(direction, 0.46 * this.reach));
-        this.scene.bodies[k].add(axis);
-        this.axes.push(axis);
-      });
-    });
-    this.scene.draw();
+    this.overlays.point(velocities);
   }
 
   look() {
-    const box = this.scene.bounds(this.shapes.length > 0 ? this.shapes : this.skeleton);
+    const box = this.bounds;
     const { min, max } = box;
     const points = box.isEmpty() ? [] : [0, 1, 2, 3, 4, 5, 6, 7].map((k) => new THREE.Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z));
     for (const frame of this.scene.frames) points.push(new THREE.Vector3().setFromMatrixPosition(frame.matrixWorld));
@@ -191,10 +189,13 @@ export class Stage {
     this.scene.fit(points);
   }
 
-  // The ground of the simulation is z = 0; without it the grid is below the robot.
+  // The ground of the simulation is z = 0; without it the floor is below the robot. Contacts can be shown where there is ground.
   ground(isReal) {
-    const bottom = this.scene.bounds(this.shapes.length > 0 ? this.shapes : this.skeleton).min.z;
-    const isLow = !isReal && Number.isFinite(bottom) && (this.robot.isFloating || bottom < -0.15 * this.reach);
-    this.scene.ground(this.reach, [{ height: isLow ? bottom : 0 }]);
+    if (this.hasGround !== isReal) {
+      this.hasGround = isReal;
+      this.addToggles(Object.keys(KINDS).filter((kind) => this.shown[kind] || (isReal && kind === "contacts")));
+      if (this.last) this.place(this.last);
+    }
+    this.scene.ground(this.reach, [{ height: isReal ? 0 : floorHeight(this.robot, this.bounds.min.z, this.reach) }]);
   }
 }

@@ -24,6 +24,7 @@ mod ik;
 mod inputs_and_outputs;
 mod interrupt;
 mod logs;
+mod looks;
 mod motion;
 mod page;
 mod page_contacts;

@@ -23,7 +23,7 @@ fn assert_near(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 /// The drawn contacts of a state are mozzi's at the same row: points by forward kinematics, forces of the simulation,
-/// cones about the plane's normal with half-angle atan μ.
+/// cones about the plane's normal with half-angle atan μ; on the side of the robot (1) or of the plane (−1).
 fn assert_contacts(
     model: &Model,
     motion: &Value,
@@ -31,6 +31,7 @@ fn assert_contacts(
     shown: &Value,
     points: &[(&str, Vec3, f64)],
     normal: Vec3,
+    side: f64,
 ) {
     let theta = numbers(&motion["theta"][row]);
     let forces = numbers(&motion["contact_forces"][row]);
@@ -42,14 +43,14 @@ fn assert_contacts(
         assert_near("the point", &numbers(&contact["at"]), &(T * at).0, 1e-5);
         let force = Vec3([forces[3 * k], forces[3 * k + 1], forces[3 * k + 2]]);
         if force.norm() > 0.02 * largest {
-            assert_near("the force", &numbers(&contact["force"]), &force.0, 2e-5 * largest);
+            assert_near("the force", &numbers(&contact["force"]), &(force * side).0, 2e-5 * largest);
         }
         let pressed = -force.dot(normal);
         assert_eq!(contact["cone"].is_object(), pressed > 0.0, "a cone where the contact carries: {contact}");
         if pressed > 0.0 {
             let cone = &contact["cone"];
             assert_near("the cone's tip", &numbers(&cone["tip"]), &(T * at).0, 1e-5);
-            assert_near("the cone's axis", &numbers(&cone["axis"]), &(-normal).0, 1e-4);
+            assert_near("the cone's axis", &numbers(&cone["axis"]), &(normal * -side).0, 1e-4);
             let angles = numbers(&cone["halfAngles"]);
             assert!(angles.len() > 40);
             assert_near("the half-angle", &angles, &vec![f64::atan(mu); angles.len()], 1e-4);
@@ -98,11 +99,13 @@ fn the_page_shows_contacts_forces_and_cones() {
     text(&[&stand[..], &["--report", &path("stand.html")]].concat());
 
     let looked = [0, 40, 300];
-    let job = |name: &str, motion: &Value, frame: &str| {
+    // the first as the plane pushes the robot, as it is at first; the second from the robot's side
+    let job = |name: &str, motion: &Value, frame: &str, applied: bool| {
         let times = looked.map(|k| motion["t"][k].clone());
-        json!({ "url": url(&folder.join(name)), "width": 900, "height": 600, "times": times, "frames": [frame] })
+        json!({ "url": url(&folder.join(name)), "width": 900, "height": 600, "times": times, "frames": [frame],
+                "applied": applied })
     };
-    let jobs = [job("slope.html", &sliding, "cube"), job("stand.html", &standing, "LF_FOOT")];
+    let jobs = [job("slope.html", &sliding, "cube", false), job("stand.html", &standing, "LF_FOOT", true)];
     let found = look(&program, &json!(jobs));
     for page in &found {
         assert_eq!(page["errors"], json!([]), "no error on the console");
@@ -112,7 +115,7 @@ fn the_page_shows_contacts_forces_and_cones() {
     let normal = Vec3([s, 0.0, c]);
     let (box_model, anymal) = (load(&cube), load("anymal"));
     for (k, shown) in looked.iter().zip(found[0]["states"].as_array().expect("states")) {
-        assert_contacts(&box_model, &sliding, *k, shown, &corners, normal);
+        assert_contacts(&box_model, &sliding, *k, shown, &corners, normal, -1.0);
         assert_near("the slope", &numbers(&shown["planes"][0]["z"]), &normal.0, 1e-6);
         let origin = numbers(&shown["planes"][0]["origin"]);
         let above = normal.dot(Vec3([origin[0], origin[1], origin[2]]));
@@ -128,7 +131,7 @@ fn the_page_shows_contacts_forces_and_cones() {
 
     let feet: Vec<_> = feet.iter().map(|foot| (*foot, Vec3::zero(), 0.7)).collect();
     for (k, shown) in looked.iter().zip(found[1]["states"].as_array().expect("states")) {
-        assert_contacts(&anymal, &standing, *k, shown, &feet, Vec3([0.0, 0.0, 1.0]));
+        assert_contacts(&anymal, &standing, *k, shown, &feet, Vec3([0.0, 0.0, 1.0]), 1.0);
         // the wrench that drives the base is none: feet, weight and inertia agree
         let base = numbers(&shown["vectors"]["force"][0]);
         let weight = 9.81 * anymal.mass();

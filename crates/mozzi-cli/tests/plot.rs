@@ -19,6 +19,12 @@ fn every_kind_of_figure_is_written() {
         let (_, svg) = drawn(&[kind, "double_pendulum", &table, "--title", "A <swing>"]);
         assert!(svg.contains(word) && svg.contains("A &lt;swing&gt;"), "{kind}: {svg:.400}");
     }
+    let slower = path("slower.csv");
+    text(&["simulate", "double_pendulum", "--theta", "1.0,0", "--time", "0.2", "--out", &slower]);
+    let (_, svg) = drawn(&["energy", "double_pendulum", &table, "--with", &slower]);
+    assert!(svg.contains("kinetic, slower.csv") && svg.contains("stroke-dasharray=\"5 3\""), "two runs: {svg:.800}");
+    let (_, svg) = drawn(&["phase", "double_pendulum", &table]);
+    assert!(svg.contains(">start</text>"), "the start is marked");
     let (said, svg) = drawn(&[
         "convergence",
         "double_pendulum",

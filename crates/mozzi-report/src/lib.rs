@@ -44,7 +44,7 @@ pub use error::Error;
 pub use fit::fit_html;
 pub use fit_json::fit_json;
 pub use motion::Motion;
-pub use play::{Played, play_html};
+pub use play::{Played, lesson_html, lessons, play_html};
 pub use touches::Touches;
 
 use mozzi::Model;

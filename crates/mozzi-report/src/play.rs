@@ -31,6 +31,47 @@ const STARTS: [(&str, &[f64]); 7] = [
     ("snake, a xacro", &[0.3, -0.5, 0.2, 0.6, -0.3, 0.4]),
 ];
 
+/// Lessons: their number, which is that of a section of the book, and their text, which is JSON.
+const LESSONS: [(&str, &str); 7] = [
+    ("8.1", include_str!("../lessons/8.1.json")),
+    ("8.2", include_str!("../lessons/8.2.json")),
+    ("8.3", include_str!("../lessons/8.3.json")),
+    ("8.4", include_str!("../lessons/8.4.json")),
+    ("8.5", include_str!("../lessons/8.5.json")),
+    ("8.6", include_str!("../lessons/8.6.json")),
+    ("8.7", include_str!("../lessons/8.7.json")),
+];
+
+/// The numbers of the lessons.
+pub fn lessons() -> impl Iterator<Item = &'static str> {
+    LESSONS.iter().map(|&(number, _)| number)
+}
+
+/// The playground with a lesson beside its robot; none if there is no lesson of this number.
+pub fn lesson_html(number: &str) -> Option<String> {
+    let &(_, text) = LESSONS.iter().find(|&&(known, _)| known == number)?;
+    let lesson: Value = serde_json::from_str(text).ok()?;
+    let mut robots = menu();
+    let place = robots.iter().position(|robot| robot["name"] == lesson["robot"])?;
+    if !lesson["theta"].is_null() {
+        robots[place]["theta"] = lesson["theta"].clone();
+    }
+    let title = format!("{}: mozzi's playground", lesson["title"].as_str().unwrap_or_default());
+    let data = json!({ "robots": robots, "first": place, "friction": FRICTION, "lesson": lesson });
+    Some(filled(PAGE, WASM, &title, &data))
+}
+
+/// The embedded robots, a xacro, an MJCF and two closed loops.
+fn menu() -> Vec<Value> {
+    embedded::names()
+        .map(|name| {
+            let file = format!("{name}.urdf");
+            entry(name, &file, embedded::text(name).unwrap_or_default(), true)
+        })
+        .chain(MORE.map(|(name, file, text)| entry(name, file, text, false)))
+        .collect()
+}
+
 /// The robot that the playground shows at first.
 #[derive(Clone, Copy, Debug)]
 pub struct Played<'a> {
@@ -40,6 +81,8 @@ pub struct Played<'a> {
     pub file: &'a str,
     /// The file's text: URDF, MJCF or JSON.
     pub text: &'a str,
+    /// Other texts that it includes, by their paths from its folder.
+    pub included: &'a [(String, String)],
     /// The robot itself; what differs from the text comes from options.
     pub model: &'a Model,
     /// Its meshes.
@@ -50,18 +93,15 @@ pub struct Played<'a> {
 
 /// The playground with a first robot, the embedded ones, a xacro, an MJCF and two closed loops.
 pub fn play_html(first: &Played) -> String {
-    let mut robots: Vec<Value> = embedded::names()
-        .map(|name| {
-            let file = format!("{name}.urdf");
-            entry(name, &file, embedded::text(name).unwrap_or_default(), true)
-        })
-        .chain(MORE.map(|(name, file, text)| entry(name, file, text, false)))
-        .collect();
+    let mut robots = menu();
     let place = embedded::names().position(|name| name == first.name && is_as_embedded(name, first.model));
     let place = place.unwrap_or_else(|| {
         let name = first.name.rsplit(['/', '\\']).next().unwrap_or_default();
         let mut own = entry(name, first.file, first.text, false);
         own["description"] = json::to_value(first.model.description());
+        for (path, text) in first.included {
+            own["files"][path] = json!(text);
+        }
         own["meshes"] = first.drawing.meshes_to_json();
         robots.insert(0, own);
         0
@@ -99,12 +139,29 @@ mod tests {
             name: "ur5",
             file: "ur5.urdf",
             text: "",
+            included: &[],
             model: &model,
             drawing: &drawing,
             theta: None,
         });
         assert!(page.len() < 2_500_000, "{} bytes", page.len());
         assert!(page.contains("\"first\":5") && page.contains("<title>ur5: mozzi's playground</title>"));
+    }
+
+    #[test]
+    fn every_lesson_has_its_robot_and_questions() {
+        for number in lessons() {
+            let page = lesson_html(number).expect("a lesson");
+            assert!(page.contains("\"lesson\":{") && page.len() < 2_500_000, "{number}: {} bytes", page.len());
+        }
+        for (number, text) in LESSONS {
+            let lesson: Value = serde_json::from_str(text).expect("JSON");
+            assert!(lesson["title"].as_str().is_some_and(|title| title.starts_with(number)));
+            let parts = lesson["parts"].as_array().expect("parts");
+            let questions = parts.iter().filter(|part| !part["ask"].is_null() || !part["choose"].is_null());
+            assert!(questions.count() > 1, "{number}");
+        }
+        assert_eq!(lesson_html("9.1"), None);
     }
 
     #[test]
@@ -117,11 +174,13 @@ mod tests {
             name: "a/own.json",
             file: "own.json",
             text,
+            included: &[("parts/b.xml".to_string(), "<mujoco/>".to_string())],
             model: &model,
             drawing: &drawing,
             theta: None,
         });
         assert!(page.contains("\"first\":0") && page.contains("\"name\":\"own.json\""));
+        assert!(page.contains("\"parts/b.xml\":\"\\u003cmujoco/>\""), "what it includes");
     }
 
     #[test]
@@ -130,7 +189,7 @@ mod tests {
         let drawing = Drawing::default();
         let (name, file) = ("double_pendulum", "double_pendulum.urdf");
         let theta = Some(&[0.125, -0.25][..]);
-        let page = play_html(&Played { name, file, text: "", model: &model, drawing: &drawing, theta });
+        let page = play_html(&Played { name, file, text: "", included: &[], model: &model, drawing: &drawing, theta });
         assert!(page.contains("\"theta\":[0.125,-0.25]"));
     }
 }

@@ -35,7 +35,7 @@ const DELTA: &str = include_str!("../../mozzi-report/robots/delta.json");
 fn robots_of_the_playground_open() {
     let mut session = Session::default();
     for (file, text, n, shapes) in [
-        ("ur5.urdf", UR5, 6, 0),
+        ("ur5.urdf", UR5, 6, 23),
         ("snake.urdf.xacro", SNAKE, 6, 7),
         ("spherical_pendulum.xml", CART, 5, 5),
         ("four_bar.json", FOUR_BAR, 3, 0),

@@ -10,7 +10,8 @@ use crate::serve;
 use crate::state::StartArguments;
 use clap::{Arg, Args};
 use mozzi::Model;
-use mozzi_report::{Played, play_html};
+use mozzi_report::{Played, lesson_html, lessons, play_html};
+use mozzi_urdf::mjcf::included;
 use mozzi_urdf::{embedded, expanded};
 use serde_json::json;
 use std::path::Path;
@@ -26,6 +27,9 @@ pub struct PlayArguments {
     start: StartArguments,
     #[command(flatten)]
     meshes: MeshArguments,
+    /// A lesson beside its robot, by its section of Modern Robotics: 8.1 to 8.7
+    #[arg(long, value_name = "SECTION")]
+    lesson: Option<String>,
     /// Write the page to a file instead of serving it
     #[arg(long, value_name = "FILE.html")]
     out: Option<String>,
@@ -44,16 +48,32 @@ pub fn run(arguments: &PlayArguments) -> Result<String> {
     if arguments.start.dtheta.is_some() {
         return Err(Failure::wrong("--dtheta has no effect: the playground begins at rest"));
     }
-    let name = &model.description().name;
-    let page = page(arguments, &model)?;
+    let page = match &arguments.lesson {
+        Some(number) => lesson(arguments, number)?,
+        None => page(arguments, &model)?,
+    };
+    let name = match &arguments.lesson {
+        Some(number) => format!("lesson {number}"),
+        None => model.description().name.clone(),
+    };
     let size = format!("page: {:.1} MB", page.len() as f64 / 1e6);
     if let Some(file) = &arguments.out {
         save(file, &page)?;
         let object = json!({ "robot": name, "out": file });
         return Ok(if arguments.robot.json { print(&object) } else { format!("{size}, written to {file}\n") });
     }
-    serve::show(name, page, &size, arguments.port, arguments.robot.json)?;
+    serve::show(&name, page, &size, arguments.port, arguments.robot.json)?;
     Ok(String::new())
+}
+
+/// The robot, its start and its meshes are the lesson's own.
+fn lesson(arguments: &PlayArguments, number: &str) -> Result<String> {
+    if arguments.robot.model != FIRST || arguments.start.is_given() {
+        return Err(Failure::wrong(format!("--lesson {number} has a robot and a start of its own, expected neither")));
+    }
+    let all: Vec<&str> = lessons().collect();
+    lesson_html(number)
+        .ok_or_else(|| Failure::wrong(format!("--lesson is `{number}`, expected one of {}", all.join(", "))))
 }
 
 fn page(arguments: &PlayArguments, model: &Model) -> Result<String> {
@@ -66,7 +86,9 @@ fn page(arguments: &PlayArguments, model: &Model) -> Result<String> {
     let theta = if arguments.start.is_given() { Some(arguments.start.read(model)?.0) } else { None };
     let name = input::name(name_or_path);
     let theta = theta.as_deref();
-    Ok(play_html(&Played { name, file: &file.0, text: &file.1, model, drawing: &drawing, theta }))
+    let included = if name_or_path == "-" { Vec::new() } else { included(Path::new(name_or_path)) };
+    let [file, text] = [&file.0, &file.1];
+    Ok(play_html(&Played { name, file, text, included: &included, model, drawing: &drawing, theta }))
 }
 
 /// A name and the text of the robot's file, expanded if it is xacro.

@@ -17,6 +17,7 @@ use mozzi_report::Motion;
 use mozzi_report::figure::Figure;
 use mozzi_report::pictures::{self, Convergence, Plane};
 use serde_json::{Value, json};
+use std::path::Path;
 
 #[derive(Args, Debug)]
 pub struct PlotArguments {
@@ -54,6 +55,9 @@ struct MotionArguments {
     robot: RobotArguments,
     /// A table with columns t, theta_1 … and optionally others, as `mozzi simulate --out` writes it
     trajectory: String,
+    /// A further run in the same figure, dashed; may be repeated
+    #[arg(long, value_name = "TABLE")]
+    with: Vec<String>,
     #[command(flatten)]
     out: OutArguments,
 }
@@ -116,9 +120,15 @@ fn of_motion(
     draw: impl Fn(&Model, &Motion) -> std::result::Result<Figure, mozzi_report::Error>,
 ) -> Result<String> {
     let model = arguments.robot.load()?;
-    let file = &arguments.trajectory;
-    let motion = Motion { title: model.description().name.clone(), ..report::read(file, &model)? };
-    let figure = draw(&model, &motion).map_err(|error| Failure::wrong(format!("{file}: {error}")))?;
+    let drawn = |file: &str| {
+        let motion = Motion { title: model.description().name.clone(), ..report::read(file, &model)? };
+        draw(&model, &motion).map_err(|error| Failure::wrong(format!("{file}: {error}")))
+    };
+    let mut figure = drawn(&arguments.trajectory)?;
+    for file in &arguments.with {
+        let name = Path::new(file).file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
+        figure.add_run(&name, drawn(file)?);
+    }
     Ok(told(&save(figure, &arguments.out)?, &arguments.robot, ""))
 }
 

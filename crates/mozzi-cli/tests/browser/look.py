@@ -55,6 +55,8 @@ def look(browser, job):
     page.evaluate("mozzi.ready.then(() => true)")
     if "tip" in job:
         page.select_option("#panel select", label=job["tip"])
+    if job.get("applied"):
+        page.evaluate("mozzi.show('applied', true)")
     for time in job.get("times", []):
         page.evaluate("(time) => mozzi.seek(time)", time)
         found["states"].append(page.evaluate(STATE, job["frames"]))

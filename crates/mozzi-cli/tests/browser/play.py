@@ -3,12 +3,7 @@
 A job: {"do": name of a function below, "url", "width", "height", …}. Every answer has "errors" of the console, "requests" and the page's width.
 """
 
-import json
-import sys
-
-from playwright.sync_api import sync_playwright
-
-ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
+from visit import contrast, serve
 
 DROP = """async (texts) => {
   const transfer = new DataTransfer();
@@ -173,7 +168,7 @@ def panels(page, job):
     cell.scroll_into_view_if_needed()
     cell.hover()
     found["entry"] = page.inner_text("#entry")
-    found["axes"] = page.evaluate("() => mozzi.app.stage.axes.length")
+    found["axes"] = page.evaluate("() => mozzi.app.stage.overlays.axes.length")
     found["value"] = float(cell.get_attribute("data-value"))
     page.evaluate("(theta) => mozzi.app.setTheta(theta)", job["theta"])
     page.click("#tab-code")
@@ -201,10 +196,12 @@ def keyboard(page, job):
       .filter((one) => !(one.getAttribute("aria-label") || one.textContent.trim() || one.title || one.labels?.length))
       .map((one) => one.outerHTML.slice(0, 120))""")
     seen = []
-    page.evaluate("document.body.focus()")
+    page.click("#sheet")  # of a phone
+    page.evaluate("document.activeElement.blur()")
     for _ in range(120):
         page.keyboard.press("Tab")
         seen.append(page.evaluate("() => document.activeElement.id || document.activeElement.dataset.kind || document.activeElement.textContent.slice(0, 20)"))
+    page.keyboard.press("Escape")
     page.focus("#tab-joints")
     page.keyboard.press("ArrowRight")
     tab = page.evaluate("() => document.activeElement.id")
@@ -224,41 +221,6 @@ def keyboard(page, job):
     page.keyboard.press("d")
     themes.append(page.evaluate(theme))
     return {"nameless": names, "seen": seen, "tab": tab, "states": [before, moved, nudged], "themes": themes, "contrast": contrast(page)}
-
-
-def contrast(page):
-    """The least contrast of text with its ground, in both themes."""
-    least = """() => {
-      const channel = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
-      const light = ([r, g, b]) => 0.2126 * channel(r / 255) + 0.7152 * channel(g / 255) + 0.0722 * channel(b / 255);
-      const probe = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
-      const colour = (text) => {
-        probe.clearRect(0, 0, 1, 1);
-        probe.fillStyle = text;
-        probe.fillRect(0, 0, 1, 1);
-        return [...probe.getImageData(0, 0, 1, 1).data];
-      };
-      const groundOf = (one) => {
-        for (; one; one = one.parentElement) {
-          const own = colour(getComputedStyle(one).backgroundColor);
-          if (own[3] > 200) return own;
-        }
-        return [255, 255, 255];
-      };
-      let found = [99, ""];
-      for (const one of document.querySelectorAll("body *")) {
-        if (!one.checkVisibility() || ![...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim())) continue;
-        if (one.closest("script, style, noscript, option, .values") || one.disabled) continue;
-        const [a, b] = [light(colour(getComputedStyle(one).color)), light(groundOf(one))];
-        const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-        if (ratio < found[0]) found = [ratio, one.textContent.slice(0, 40)];
-      }
-      return found;
-    }"""
-    found = [page.evaluate(least)]
-    page.keyboard.press("d")
-    found.append(page.evaluate(least))
-    return found
 
 
 def stand(page, job):
@@ -335,22 +297,4 @@ def picture(page, job):
 DO = {f.__name__: f for f in (numbers, drop_and_play, argument, wrong_file, drag, share, edit, panels, keyboard, stand, robots, frames, picture)}
 
 
-def run(browser, job):
-    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]})
-    page.set_default_timeout(300_000)  # a busy machine draws slowly
-    found = {"errors": [], "requests": []}
-    page.on("console", lambda said: said.type == "error" and found["errors"].append(said.text))
-    page.on("pageerror", lambda error: found["errors"].append(str(error)))
-    page.on("request", lambda request: request.url.startswith(("data:", "blob:")) or found["requests"].append(request.url))
-    page.goto(job["url"])
-    page.evaluate("mozzi.ready.then(() => true)")
-    found.update(DO[job["do"]](page, job))
-    found["wide"] = page.evaluate("document.documentElement.scrollWidth")
-    page.close()
-    return found
-
-
-with sync_playwright() as playwright:
-    browser = playwright.chromium.launch(executable_path=sys.argv[1], args=ARGUMENTS)
-    print(json.dumps([run(browser, job) for job in json.load(sys.stdin)]))
-    browser.close()
+serve(DO)

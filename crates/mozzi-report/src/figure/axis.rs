@@ -40,24 +40,64 @@ impl Scale {
 pub(super) struct Ticks(pub Vec<(f64, String)>);
 
 impl Ticks {
-    /// About `about` round numbers in a range of places.
-    pub fn new(scale: Scale, [low, high]: [f64; 2], about: usize) -> Self {
-        let about = about.max(1) as f64;
-        let logarithmic = scale == Scale::Logarithmic;
-        let step = if logarithmic { ((high - low) / about).ceil().max(1.0) } else { round_step((high - low) / about) };
-        let first = (low / step).ceil() as i64;
-        let decimals = (-step.log10()).ceil().max(0.0) as usize;
-        let name = |k: i64| {
-            let x = k as f64 * step;
-            match (logarithmic, step) {
-                (true, _) => format!("10{}", superscript(x as i64)),
-                (_, step) if !(1e-4..1e5).contains(&step) => format!("{x:.1e}"),
-                _ => format!("{x:.decimals$}").replace('-', "−"),
-            }
+    /// About `about` round numbers in a range of places, two at least.
+    pub fn new(scale: Scale, range: [f64; 2], about: usize) -> Self {
+        let of = |about: usize| match scale {
+            Scale::Linear => linear(range, about as f64),
+            Scale::Logarithmic => decades(range, about as f64),
         };
-        let ticks = (first..).map(|k| (k as f64 * step, name(k))).take_while(|(x, _)| *x <= high);
-        Ticks(ticks.collect())
+        let found = (about.max(1)..about.max(1) + 12).map(of).find(|ticks| ticks.len() > 1);
+        Ticks(found.unwrap_or_else(|| match scale {
+            Scale::Linear => linear(range, 12.0),
+            Scale::Logarithmic => within_a_decade(range),
+        }))
     }
+}
+
+fn linear([low, high]: [f64; 2], about: f64) -> Vec<(f64, String)> {
+    let step = round_step((high - low) / about);
+    let first = (low / step).ceil() as i64;
+    let decimals = (-step.log10()).ceil().max(0.0) as usize;
+    let name = |x: f64| match (1e-4..1e5).contains(&step) {
+        true => format!("{x:.decimals$}").replace('-', "−"),
+        false => format!("{x:.1e}"),
+    };
+    (first..).map(|k| k as f64 * step).take_while(|x| *x <= high).map(|x| (x, name(x))).collect()
+}
+
+fn decades([low, high]: [f64; 2], about: f64) -> Vec<(f64, String)> {
+    let step = ((high - low) / about).ceil().max(1.0);
+    let first = (low / step).ceil() as i64;
+    let ticks = (first..).map(|k| k as f64 * step).take_while(|x| *x <= high);
+    ticks.map(|x| (x, format!("10{}", superscript(x as i64)))).collect()
+}
+
+/// 1, 2 … 9 times a power of ten.
+fn within_a_decade([low, high]: [f64; 2]) -> Vec<(f64, String)> {
+    let powers = low.floor() as i64..=high.floor() as i64;
+    let all = powers.flat_map(|power| (1..10).map(move |k| (k, power)));
+    let place = |(k, power): (i64, i64)| ((k as f64).log10() + power as f64, k, power);
+    let named = |(x, k, power)| match k {
+        1 => (x, format!("10{}", superscript(power))),
+        _ => (x, format!("{k}·10{}", superscript(power))),
+    };
+    all.map(place).filter(|(x, ..)| (low..=high).contains(x)).map(named).collect()
+}
+
+/// What is drawn of values: of spikes, which would dwarf all else, the part up to the range of 99 % of the numbers;
+/// and the lowest and the highest number where they are beyond.
+pub(super) fn without_spikes(values: &[f64]) -> ([f64; 2], [Option<f64>; 2]) {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(&lowest), Some(&highest)) = (sorted.first(), sorted.last()) else { return ([0.0, 0.0], [None; 2]) };
+    let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64).round() as usize];
+    let (from, to) = (at(0.005), at(0.995));
+    let usual = to - from;
+    let below = Some(lowest).filter(|x| usual > 0.0 && *x < from - 2.0 * usual);
+    let above = Some(highest).filter(|x| usual > 0.0 && *x > to + 2.0 * usual);
+    let low = if below.is_some() { from - 0.25 * usual } else { lowest };
+    let high = if above.is_some() { to + 0.25 * usual } else { highest };
+    ([low, high], [below, above])
 }
 
 /// 1, 2 or 5 times a power of ten, not below this.
@@ -84,6 +124,21 @@ mod tests {
         assert_eq!(names(Scale::Linear, [-3.0, 7.0], 5), ["−2", "0", "2", "4", "6"]);
         assert_eq!(names(Scale::Linear, [0.0, 3e-7], 3), ["0.0e0", "1.0e-7", "2.0e-7", "3.0e-7"]);
         assert_eq!(names(Scale::Logarithmic, [-3.2, 0.1], 4), ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
+        // two at least
+        assert_eq!(names(Scale::Linear, [3.1, 4.9], 1), ["3.5", "4.0", "4.5"]);
+        assert_eq!(names(Scale::Logarithmic, [-0.9, -0.2], 4), ["2·10⁻¹", "3·10⁻¹", "4·10⁻¹", "5·10⁻¹", "6·10⁻¹"]);
+    }
+
+    #[test]
+    fn spikes_are_cut_and_steps_are_not() {
+        let mut wave: Vec<f64> = (0..1000).map(|k| (0.01 * f64::from(k)).sin()).collect();
+        assert_eq!(without_spikes(&wave).1, [None, None]);
+        wave[500] = 2e4;
+        let ([low, high], cut) = without_spikes(&wave);
+        assert_eq!(cut, [None, Some(2e4)]);
+        assert!(low < -0.99 && (1.0..2.0).contains(&high), "{low} {high}");
+        let jump: Vec<f64> = (0..100).map(|k| if k < 60 { 0.0 } else { 5.0 }).collect();
+        assert_eq!(without_spikes(&jump), ([0.0, 5.0], [None, None]));
     }
 
     #[test]

@@ -5,7 +5,7 @@ mod svg;
 
 pub use axis::Scale;
 
-use axis::Ticks;
+use axis::{Ticks, without_spikes};
 
 /// Panels in rows, below a common legend.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -60,6 +60,10 @@ pub enum Stroke {
     Filled,
     /// Thick, with a mark at each point: links and joints.
     Links,
+    /// Points without a line.
+    Dots,
+    /// A ring at each point.
+    Rings,
 }
 
 impl Curve {
@@ -69,13 +73,51 @@ impl Curve {
     }
 }
 
+impl Figure {
+    /// The curves of another run, dashed, in the panels with the same labels; panels that this figure has not are added.
+    pub fn add_run(&mut self, name: &str, other: Figure) {
+        for panel in other.panels {
+            let labels = |panel: &Panel| [panel.x_label.clone(), panel.y_label.clone()];
+            let named = |curve: Curve| {
+                let stroke = if curve.stroke == Stroke::Line { Stroke::Dashed } else { curve.stroke };
+                let name = if curve.name.is_empty() { name.to_string() } else { format!("{}, {name}", curve.name) };
+                Curve { name, stroke, ..curve }
+            };
+            let curves: Vec<Curve> = panel.curves.iter().cloned().map(named).collect();
+            match self.panels.iter_mut().find(|known| labels(known) == labels(&panel)) {
+                Some(known) => known.curves.extend(curves),
+                None => self.panels.push(Panel { curves, ..panel }),
+            }
+        }
+    }
+}
+
 impl Panel {
-    /// Lowest and highest of both coordinates, with a margin.
-    fn ranges(&self) -> [[f64; 2]; 2] {
-        [0, 1].map(|side| {
-            let values = self.curves.iter().flat_map(|curve| &curve.points).map(|point| point[side]);
-            self.scale.range(values)
-        })
+    /// Lowest and highest of both coordinates, with a margin; over time without spikes, and the numbers of these.
+    fn ranges(&self) -> ([[f64; 2]; 2], [Option<f64>; 2]) {
+        let values = |side: usize| self.curves.iter().flat_map(|curve| &curve.points).map(move |point| point[side]);
+        let (x, all) = (self.scale.range(values(0)), self.scale.range(values(1)));
+        if !self.x_label.starts_with("t [") || self.scale != Scale::Linear {
+            return ([x, all], [None; 2]);
+        }
+        let (usual, cut) = without_spikes(&values(1).collect::<Vec<_>>());
+        ([x, if cut == [None; 2] { all } else { self.scale.range(usual.into_iter()) }], cut)
+    }
+
+    /// The number of curves before the k-th that it lies on, to less than a line's width.
+    fn lies_on(&self, k: usize, height: f64) -> usize {
+        let own = &self.curves[k];
+        let is_same = |other: &Curve| {
+            other.stroke == own.stroke
+                && other.points.len() == own.points.len()
+                && !own.points.is_empty()
+                && other
+                    .points
+                    .iter()
+                    .zip(&own.points)
+                    .all(|(a, b)| a[0] == b[0] && (a[1] - b[1]).abs() <= 2e-3 * height)
+        };
+        if own.stroke != Stroke::Line { 0 } else { self.curves[..k].iter().filter(|other| is_same(other)).count() }
     }
 
     fn ticks(&self, range: [f64; 2], about: usize) -> Ticks {
@@ -106,6 +148,35 @@ mod tests {
             assert!(!svg.contains("NaN") && !svg.contains("inf"));
             assert!(svg.len() < 30_000, "points closer than a hair are one: {} bytes", svg.len());
         }
+    }
+
+    #[test]
+    fn spikes_are_marked_and_lines_on_one_another_are_dashed() {
+        let mut figure = wave(Scale::Linear);
+        let first = figure.panels[0].curves[0].clone();
+        figure.panels[0].curves.push(Curve { name: "the same".into(), color: 11, ..first });
+        assert!(figure.svg().contains("stroke-dasharray=\"6 6\""), "two curves are seen");
+        assert!(!figure.svg().contains('▲'));
+        figure.panels[0].curves[0].points[700][1] = 2e4;
+        let svg = figure.svg();
+        assert!(svg.contains("▲ 20000") && svg.contains("l-4 6h8Z"), "{svg:.2000}");
+        assert!(!svg.contains("stroke-dasharray=\"6 6\"") && svg.contains("stroke-dasharray=\"8 4\""));
+        let rings = Curve { name: "start".into(), stroke: Stroke::Rings, points: vec![[0.0, 1.0]], ..Curve::default() };
+        let figure = Figure { panels: vec![Panel { curves: vec![rings], ..Panel::default() }], ..Figure::default() };
+        assert!(figure.svg().contains(">start</text>"), "a mark is explained");
+    }
+
+    #[test]
+    fn a_second_run_is_dashed_in_the_same_panels() {
+        let mut figure = wave(Scale::Linear);
+        let mut other = wave(Scale::Linear);
+        other.panels.push(Panel { y_label: "τ [N m]".into(), ..Panel::default() });
+        figure.add_run("other.csv", other);
+        assert_eq!((figure.panels.len(), figure.panels[0].curves.len()), (2, 4));
+        let added = &figure.panels[0].curves[2];
+        assert_eq!((added.name.as_str(), added.stroke), ("a & b, other.csv", Stroke::Dashed));
+        assert_eq!(added.points, figure.panels[0].curves[0].points);
+        assert!(figure.svg().contains("a &amp; b, other.csv") && figure.svg().contains("stroke-dasharray=\"5 3\""));
     }
 
     #[test]

@@ -20,6 +20,9 @@ const LETTER: f64 = 6.2;
 const PALETTE: [&str; 10] =
     ["#2f6fcb", "#d96a26", "#2a8f63", "#b83a5e", "#7a52c7", "#9a7b16", "#16879b", "#c253a6", "#555d66", "#111111"];
 
+/// Of the eleventh and further curves.
+const DASHES: [&str; 3] = ["8 4", "2 3", "10 3 2 3"];
+
 fn color(k: usize) -> &'static str {
     PALETTE[k % PALETTE.len()]
 }
@@ -52,6 +55,17 @@ impl Figure {
         )
     }
 
+    /// The same with the colours of a page's style sheet, `--c0` to `--c9`, `--panel`, `--text`, `--line`: for light and
+    /// dark.
+    pub fn svg_of_page(&self) -> String {
+        let colors = PALETTE.iter().enumerate().map(|(k, color)| (*color, format!("var(--c{k})")));
+        let grounds = [("#ffffff", "panel"), ("#222", "text"), ("#333", "muted"), ("#e3e6ea", "line")];
+        let grounds = grounds.into_iter().map(|(color, name)| (color, format!("var(--{name})")));
+        colors
+            .chain(grounds)
+            .fold(self.svg(), |text, (color, name)| text.replace(&format!("\"{color}\""), &format!("\"{name}\"")))
+    }
+
     /// The names of all panels' curves, once each; returns the legend's end.
     fn legend(&self, out: &mut String, top: f64) -> f64 {
         let mut names: Vec<&Curve> = Vec::new();
@@ -60,7 +74,8 @@ impl Figure {
                 names.push(curve);
             }
         }
-        if names.len() < 2 {
+        // one name says nothing, but of what is marked
+        if names.len() < 2 && names.iter().all(|curve| curve.stroke != Stroke::Rings) {
             return top;
         }
         let (mut x, mut y) = (MARGIN[0], top + 10.0);
@@ -70,14 +85,11 @@ impl Figure {
                 (x, y) = (MARGIN[0], y + LEGEND_LINE);
             }
             let ends = [[x, y], [x + 20.0, y]];
-            line(
-                out,
-                &ends,
-                &Curve {
-                    stroke: if curve.stroke == Stroke::Dashed { Stroke::Dashed } else { Stroke::Line },
-                    ..curve.clone()
-                },
-            );
+            match curve.stroke {
+                Stroke::Dots | Stroke::Rings => line(out, &[[x + 10.0, y]], curve, 0),
+                Stroke::Dashed => line(out, &ends, curve, 0),
+                _ => line(out, &ends, &Curve { stroke: Stroke::Line, ..curve.clone() }, 0),
+            }
             text(out, [x + 25.0, y + 3.8], "start", 11.0, &curve.name);
             x += long;
         }
@@ -91,7 +103,7 @@ impl Panel {
             return if panels == 1 { ONLY_HEIGHT } else { PANEL_HEIGHT };
         }
         // as tall as equal units need, within bounds
-        let [[left, right], [low, high]] = self.ranges();
+        let ([[left, right], [low, high]], _) = self.ranges();
         let inner = (width - MARGIN[0] - MARGIN[1]) * ((high - low) / (right - left)).clamp(0.4, 1.2);
         inner + MARGIN[2] + MARGIN[3]
     }
@@ -99,7 +111,7 @@ impl Panel {
     fn draw(&self, out: &mut String, [x0, y0]: [f64; 2], [width, height]: [f64; 2]) {
         let [left, top] = [x0 + MARGIN[0], y0 + MARGIN[2]];
         let (w, h) = (width - MARGIN[0] - MARGIN[1], height - MARGIN[2] - MARGIN[3]);
-        let [mut xs, mut ys] = self.ranges();
+        let ([mut xs, mut ys], cut) = self.ranges();
         if self.equal {
             let unit = ((xs[1] - xs[0]) / w).max((ys[1] - ys[0]) / h);
             let widened = |[low, high]: [f64; 2], size: f64| {
@@ -118,9 +130,26 @@ impl Panel {
             let _ = writeln!(out, "<path d=\"M{left:.1} {0:.1}h{w:.1}\" stroke=\"#e3e6ea\"/>", up(place));
             text(out, [left - 6.0, up(place) + 3.6], "end", 10.5, &name);
         }
-        for curve in &self.curves {
-            let point = |p: &[f64; 2]| [across(self.scale.place(p[0])), up(self.scale.place(p[1]))];
-            line(out, &curve.points.iter().map(point).collect::<Vec<_>>(), curve);
+        for (k, curve) in self.curves.iter().enumerate() {
+            // spikes end at the border
+            let height = |y: f64| if cut == [None; 2] { y } else { y.clamp(ys[0], ys[1]) };
+            let point = |p: &[f64; 2]| [across(self.scale.place(p[0])), up(height(self.scale.place(p[1])))];
+            line(out, &curve.points.iter().map(point).collect::<Vec<_>>(), curve, self.lies_on(k, ys[1] - ys[0]));
+        }
+        for (side, peak) in cut.into_iter().enumerate().filter_map(|(side, peak)| Some((side, peak?))) {
+            let is_beyond = |y: f64| if side == 1 { y > ys[1] } else { y < ys[0] };
+            let beyond = self.curves.iter().flat_map(|curve| &curve.points).filter(|p| is_beyond(p[1]));
+            let (edge, inside) = if side == 1 { (top, 6.0) } else { (top + h, -6.0) };
+            peaks(out, beyond.map(|p| across(p[0])), [edge, inside]);
+            let sign = if side == 1 { '▲' } else { '▼' };
+            let name = format!("{sign} {}", format!("{peak:.4}").trim_end_matches('0').trim_end_matches('.'));
+            text(
+                out,
+                [left + w - 4.0, edge + if side == 1 { 14.0 } else { -7.0 }],
+                "end",
+                10.5,
+                &name.replace('-', "−"),
+            );
         }
         let _ = writeln!(out, "<path d=\"M{left:.1} {top:.1}v{h:.1}h{w:.1}\" stroke=\"#333\"/>");
         text(out, [left + w / 2.0, top + h + 30.0], "middle", 11.5, &self.x_label);
@@ -131,7 +160,22 @@ impl Panel {
     }
 }
 
-fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve) {
+/// Marks where curves leave the panel, none nearer to another than its width.
+fn peaks(out: &mut String, places: impl Iterator<Item = f64>, [edge, inside]: [f64; 2]) {
+    let mut places: Vec<f64> = places.collect();
+    places.sort_by(f64::total_cmp);
+    let mut last = f64::NEG_INFINITY;
+    for x in places {
+        if x - last < 9.0 {
+            continue;
+        }
+        last = x;
+        let _ = writeln!(out, "<path d=\"M{x:.1} {edge:.1}l-4 {inside}h8Z\" fill=\"#333\"/>");
+    }
+}
+
+/// A curve that lies `on` others is dashes on them.
+fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve, on: usize) {
     let (mut path, mut marks) = (String::new(), String::new());
     let mut last: Option<[f64; 2]> = None;
     for (k, &[x, y]) in points.iter().enumerate() {
@@ -146,18 +190,34 @@ fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve) {
             continue;
         }
         let _ = write!(path, "{}{x:.1} {y:.1}", if last.is_some() { "L" } else { "M" });
-        if matches!(curve.stroke, Stroke::Marked | Stroke::Links) {
+        if matches!(curve.stroke, Stroke::Marked | Stroke::Links | Stroke::Rings) {
             let _ = write!(marks, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.8\"/>");
+        } else if curve.stroke == Stroke::Dots {
+            let _ = write!(marks, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"1.9\"/>");
         }
         last = Some([x, y]);
     }
     let color = color(curve.color);
     let style = match curve.stroke {
-        Stroke::Line | Stroke::Marked => "stroke-width=\"1.4\"".to_string(),
+        Stroke::Line if on > 0 => format!("stroke-width=\"1.4\" stroke-dasharray=\"6 {}\"", 6 * on),
+        // colours come again from the eleventh on, with other dashes
+        Stroke::Line | Stroke::Marked => match curve.color / PALETTE.len() {
+            0 => "stroke-width=\"1.4\"".to_string(),
+            k => format!("stroke-width=\"1.4\" stroke-dasharray=\"{}\"", DASHES[(k - 1) % DASHES.len()]),
+        },
+        Stroke::Dots | Stroke::Rings => String::new(),
         Stroke::Dashed => "stroke-width=\"1.2\" stroke-dasharray=\"5 3\"".to_string(),
         Stroke::Filled => format!("stroke-width=\"1.2\" fill=\"{color}\" fill-opacity=\"0.12\""),
         Stroke::Links => "stroke-width=\"3\" stroke-linecap=\"round\"".to_string(),
     };
+    if curve.stroke == Stroke::Dots {
+        let _ = writeln!(out, "<g fill=\"{color}\" fill-opacity=\"0.45\">{marks}</g>");
+        return;
+    }
+    if curve.stroke == Stroke::Rings {
+        let _ = writeln!(out, "<g fill=\"#ffffff\" stroke=\"{color}\" stroke-width=\"1.6\">{marks}</g>");
+        return;
+    }
     let close = if curve.stroke == Stroke::Filled && !path.is_empty() { "Z" } else { "" };
     let _ = writeln!(out, "<path d=\"{path}{close}\" stroke=\"{color}\" {style}/>");
     if !marks.is_empty() {

@@ -1,7 +1,7 @@
 //! Figures of a motion: over time, and in phase.
 
 use crate::error::Error;
-use crate::figure::{Curve, Figure, Panel};
+use crate::figure::{Curve, Figure, Panel, Stroke};
 use crate::motion::Motion;
 use mozzi::Model;
 use mozzi::model::{Freedom, Place, description};
@@ -165,10 +165,13 @@ pub fn phase(model: &Model, motion: &Motion) -> Result<Figure, Error> {
         let theta = column(&motion.theta, model.nq(), joint.place.q);
         let rate = column(dtheta, width, joint.place.j);
         let unit = if joint.slides { "m" } else { "rad" };
+        let points: Vec<[f64; 2]> = theta.zip(rate).map(|(x, v)| [x, v]).collect();
+        let first = points.iter().take(1).copied().collect();
+        let start = Curve { name: "start".into(), color: 9, stroke: Stroke::Rings, points: first };
         Panel {
             x_label: format!("{} [{unit}]", joint.name),
             y_label: format!("θ̇ [{unit}/s]"),
-            curves: vec![Curve::line("", joint.k, theta.zip(rate).map(|(x, v)| [x, v]).collect())],
+            curves: vec![Curve::line("", joint.k, points), start],
             ..Panel::default()
         }
     };
@@ -202,7 +205,9 @@ mod tests {
         assert_eq!(third.points[5], [motion.t[5], expected]);
         let phases = phase(&model, &motion).expect("a figure");
         assert_eq!((phases.panels.len(), phases.columns), (8, 3));
-        assert_eq!(phases.panels[3].curves[0].points[5], [motion.theta[5 * 8 + 3], expected]);
+        let curves = &phases.panels[3].curves;
+        assert_eq!(curves[0].points[5], [motion.theta[5 * 8 + 3], expected]);
+        assert_eq!((curves[1].name.as_str(), &curves[1].points), ("start", &curves[0].points[..1].to_vec()));
     }
 
     #[test]

@@ -92,7 +92,7 @@ use crate::text::dialect::Dialect;
 use crate::text::element::Element;
 use crate::text::pages::Pages;
 use crate::text::source::Source;
-use crate::text::syntax;
+use crate::text::{bytes, syntax};
 use class::Classes;
 use compiler::Compiler;
 use ignored::Ignored;
@@ -151,6 +151,27 @@ pub(crate) fn shapes(sources: &mut Vec<Source>, folder: Option<&Path>, given: &X
         Some(Read { description, shapes: Some(shapes), .. }) => shapes.named(&description.links),
         _ => <_>::default(),
     }
+}
+
+/// The files that an MJCF file includes, by their paths from its folder, with their texts; none of another file, or if
+/// one cannot be read.
+pub fn included(file: &Path) -> Vec<(String, String)> {
+    let (Some(folder), Ok(content)) = (file.parent(), crate::file_bytes(file)) else { return Vec::new() };
+    let text = bytes::read(&content, &mut Findings::default());
+    if !is_mjcf(text) {
+        return Vec::new();
+    }
+    let mut sources =
+        vec![syntax::mended(Source::new(&file.to_string_lossy(), text), Dialect::Mjcf, &mut Findings::default())];
+    let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
+    if include::gather(&mut sources, (Some(folder), &XacroArguments::default()), &mut cx).is_none() {
+        return Vec::new();
+    }
+    let relative = |source: &Source| {
+        let path = Path::new(&*source.name).strip_prefix(folder).ok()?;
+        Some((path.to_string_lossy().replace('\\', "/"), source.text.to_string()))
+    };
+    sources.iter().skip(1).filter_map(relative).collect()
 }
 
 /// Where included files are searched, and texts that are read instead of files.

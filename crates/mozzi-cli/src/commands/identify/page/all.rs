@@ -1,6 +1,6 @@
 //! Every number of the result: `--all`.
 
-use crate::recogniser::Row;
+use crate::tables::samples::Row;
 use crate::text::{Page, table};
 use mozzi_identify::Identification;
 use mozzi_identify::judgement::Judgement;

@@ -2,7 +2,7 @@
 
 mod all;
 
-use crate::recogniser::Row;
+use crate::tables::samples::Row;
 use crate::text::{Page, table};
 use all::{column_table, parameters, weak};
 use mozzi::Model;
