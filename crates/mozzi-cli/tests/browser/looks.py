@@ -153,7 +153,7 @@ def controls(page, job):
     })""")
     found["nudges"] = page.inner_text(".nudges")
     page.click("#tab-numbers")
-    shown = "() => [...document.querySelectorAll('#page-numbers details')].filter((one) => !one.hidden).map(({ dataset }) => dataset.name)"
+    shown = "() => [...document.querySelectorAll('#page-numbers details')].filter((one) => !one.hidden && one.dataset.name).map(({ dataset }) => dataset.name)"
     for word in ("torque", "zebra"):
         page.fill("#page-numbers input", word)
         found[word] = page.evaluate(shown)

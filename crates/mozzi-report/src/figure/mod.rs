@@ -74,7 +74,8 @@ impl Curve {
 }
 
 impl Figure {
-    /// The curves of another run, dashed, in the panels with the same labels; panels that this figure has not are added.
+    /// Adds the curves of another run, dashed, to the panels with the same labels, and panels that this figure does not
+    /// have.
     pub fn add_run(&mut self, name: &str, other: Figure) {
         for panel in other.panels {
             let labels = |panel: &Panel| [panel.x_label.clone(), panel.y_label.clone()];

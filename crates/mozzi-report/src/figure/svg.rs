@@ -55,8 +55,8 @@ impl Figure {
         )
     }
 
-    /// The same with the colours of a page's style sheet, `--c0` to `--c9`, `--panel`, `--text`, `--line`: for light and
-    /// dark.
+    /// The same with the colours of a page's style sheet, for light and dark: `--c0` to `--c9`, `--panel`, `--text`,
+    /// `--muted`, `--line`.
     pub fn svg_of_page(&self) -> String {
         let colors = PALETTE.iter().enumerate().map(|(k, color)| (*color, format!("var(--c{k})")));
         let grounds = [("#ffffff", "panel"), ("#222", "text"), ("#333", "muted"), ("#e3e6ea", "line")];
