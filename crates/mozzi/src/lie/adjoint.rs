@@ -7,7 +7,7 @@ use core::ops::Mul;
 
 /// `[Ad_T]` : se(3) → se(3). With T = `T_sb`, V_s = `[Ad_T]` V_b (Modern Robotics 3.83).
 #[derive(Clone, Copy, Debug)]
-pub struct Adjoint<S = f64>(SE3<S>);
+pub struct Adjoint<S = f64>(pub(crate) SE3<S>);
 
 /// `[Ad_T]`ᵀ : se(3)* → se(3)*. With T = `T_sb`, F_b = `[Ad_T]`ᵀ F_s (Modern Robotics 3.95).
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ pub struct AdjointTranspose<S = f64>(SE3<S>);
 
 /// `[ad_V]` : se(3) → se(3), the Lie bracket with V (Modern Robotics 8.38).
 #[derive(Clone, Copy, Debug)]
-pub struct LieBracket<S = f64>(Twist<S>);
+pub struct LieBracket<S = f64>(pub(crate) Twist<S>);
 
 /// `[ad_V]`ᵀ : se(3)* → se(3)*.
 #[derive(Clone, Copy, Debug)]
