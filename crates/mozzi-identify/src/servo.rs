@@ -156,7 +156,8 @@ mod tests {
         eprintln!("{servo:?}");
         assert!((servo.stiffness[0] / kp - 1.0).abs() < 0.01, "{servo:?}");
         assert!((servo.damping[0] / kd - 1.0).abs() < 0.02, "{servo:?}");
-        assert!((servo.delay / delay - 1.0).abs() < 0.02, "{servo:?}");
+        // the target steps between two rows, 4 ms apart
+        assert!((servo.delay / delay - 1.0).abs() < 0.05, "{servo:?}");
         assert!(servo.nrms < 0.05);
     }
 
