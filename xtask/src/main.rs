@@ -89,7 +89,7 @@ usage: cargo xtask COMMAND
           --only UR5, --quantity mass_matrix          only this robot or quantity, to standard output
           --states 4194304                            at most this many states in an array, likewise
   jit-report  count the instructions of machine code for AArch64 beside x86-64's, into docs/arm.md; any machine does
-  aarch64 random programs as machine code for AArch64 by qemu, in two minutes; skipped without qemu-user, a C compiler
+  aarch64 random programs as machine code for AArch64 by qemu; skipped without qemu-user, a C compiler
           for it and rustup's target
   nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target

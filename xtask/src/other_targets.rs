@@ -90,7 +90,7 @@ pub fn aarch64_bits(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// A few random programs, by a package of their own: without what other tests of mozzi-engine need, it is built in a minute.
+/// A few random programs, by a package of their own, which does not build what other tests of mozzi-engine need.
 pub fn aarch64_sample(workspace: &Workspace) -> Outcome {
     match cargo_for_aarch64(workspace, &["test", "--manifest-path", "xtask/aarch64/Cargo.toml"]) {
         Ok(mut cargo) => command::outcome(&mut cargo),

@@ -44,6 +44,9 @@ pub(crate) fn allocate<A: Assembler>(shape: Shape, lowered: &Lowered, arrays: Ar
     if sizes.len() >= MOST_ARRAYS {
         return Err(Refusal::Program);
     }
+    if sizes.iter().any(|&size| size >= A::LARGEST_ARRAY) {
+        return Err(Refusal::Long);
+    }
     let memory = sizes.len() - 1;
     let mut assembler = A::new(shape, &sizes);
     let mut used = 0;

@@ -69,6 +69,9 @@ impl Tally {
 /// Encodes instructions. It makes machine code memory-safe: it knows the length in bytes of every array, and emits no
 /// instruction that reads or writes beyond it, for any input.
 pub(crate) trait Assembler: Sized {
+    /// Arrays are shorter than this, in bytes: so far its addresses reach.
+    const LARGEST_ARRAY: usize;
+
     /// Code that reads the addresses of all arrays of these sizes in bytes from a list; after them it has a frame of
     /// its own, as the last array.
     fn new(shape: Shape, sizes: &[usize]) -> Self;

@@ -14,7 +14,7 @@ use super::allocate::Line;
 use super::instruction::{Grain, Half, Operation, Value};
 use super::registers::Pinned;
 use super::shape::Shape;
-use super::target::{Assembler, MOST_ARRAYS, Memory, Operand, Register, Tally};
+use super::target::{Assembler, LARGEST_FRAME, MOST_ARRAYS, Memory, Operand, Register, Tally};
 use encode::{add_immediate, lane_two, load_or_store};
 
 /// A general register.
@@ -55,6 +55,8 @@ fn number(register: Register) -> u32 {
 }
 
 impl Assembler for Arm {
+    const LARGEST_ARRAY: usize = 1 << 24;
+
     fn new(shape: Shape, sizes: &[usize]) -> Self {
         assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
         let sizes = [sizes, &[0]].concat();
@@ -245,6 +247,9 @@ impl Arm {
     /// Loads or stores so many bytes.
     fn access(&mut self, is_load: bool, register: Register, memory: Memory, byte: usize, size: usize) {
         self.bound(memory, byte + size);
+        if memory == self.frame && byte + size > LARGEST_FRAME {
+            return; // such a frame is refused at the end
+        }
         let register = self.register(register);
         let (pointer, rest) = match byte {
             _ if encode::reaches(byte, size) => (FIRST_BASE + memory as Address, byte),
@@ -278,6 +283,6 @@ impl Arm {
         if memory == self.frame {
             self.sizes[memory] = self.sizes[memory].max(end);
         }
-        assert!(end <= self.sizes[memory] && end < 1 << 24, "byte {end} of array {memory}");
+        assert!(end <= self.sizes[memory], "byte {end} of array {memory}");
     }
 }

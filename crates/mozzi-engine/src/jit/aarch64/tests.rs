@@ -221,6 +221,13 @@ fn nothing_beyond_an_array_is_written() {
 }
 
 #[test]
+fn a_frame_beyond_all_reach_is_told() {
+    let mut it = Arm::new(Shape::TwoF64, &[64]);
+    it.store(it.frame(), 1 << 25, 0);
+    assert_eq!((it.frame_bytes(), it.body.len()), ((1 << 25) + 16, 0));
+}
+
+#[test]
 fn a_function_keeps_what_is_its_callers() {
     for arrays in 1..MOST_ARRAYS {
         for (frame, repeats) in [0, 64, 5000, 40_000, 100_000].into_iter().flat_map(|f| [(f, false), (f, true)]) {

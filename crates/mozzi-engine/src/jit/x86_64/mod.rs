@@ -55,6 +55,8 @@ type Mask = u8;
 const MOST_MASKS: usize = 7;
 
 impl Assembler for X86 {
+    const LARGEST_ARRAY: usize = i32::MAX as usize;
+
     fn new(shape: Shape, sizes: &[usize]) -> Self {
         assert!(sizes.len() < MOST_ARRAYS, "{} arrays", sizes.len());
         let sizes = [sizes, &[0]].concat();
