@@ -6,9 +6,9 @@ import os
 import sys
 
 logging.disable(logging.CRITICAL)
-from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.plant import MultibodyPlant  # first: the parser needs its types
 from pydrake.multibody.tree import BodyIndex
+from pydrake.multibody.parsing import Parser
 
 
 def answer(robot):
