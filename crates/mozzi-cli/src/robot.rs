@@ -145,8 +145,8 @@ fn print<T>(name: &str, warnings: &[T], consequence: impl Fn(&T) -> Consequence,
 /// A robot's file, and how it is read.
 #[derive(Args, Debug)]
 pub struct FileArguments {
-    /// A file (URDF, xacro, MJCF, SDFormat, or JSON of `mozzi convert`), - for standard input, or an embedded robot: anymal,
-    /// double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
+    /// A file (URDF, xacro, MJCF, SDFormat, or JSON of `mozzi convert`), - for standard input, or an embedded robot:
+    /// anymal, double_pendulum, furuta_pendulum, panda, two_link_planar, ur5
     pub model: String,
     /// The frame for poses, Jacobians and the tip's wrench; required if the robot branches
     #[arg(long, value_name = "FRAME", visible_alias = "frame", aliases = ["ee", "tool", "tip"])]

@@ -153,7 +153,7 @@ impl PyModel {
         slf.call_method(Query::named(quantity).map_err(of_model)?.name(), args, kwargs)
     }
 
-    /// The robot of a URDF, xacro or MJCF file: a path, or a file to read. `policy` 'strict' refuses what is odd,
+    /// The robot of a URDF, xacro, MJCF or SDFormat file: a path or file. `policy` 'strict' refuses oddities,
     /// 'lenient' repairs inertias and says so; `floating` frees the base. A xacro file is expanded with `xacro_args`
     /// (the values of its arguments by name) and `packages` (the folders of `$(find name)`).
     #[staticmethod]
@@ -176,7 +176,7 @@ impl PyModel {
         load::file(path_or_file, policy, floating, &load::Xacro::default()).map(Self::of)
     }
 
-    /// The robot of a text of URDF, xacro or MJCF, str or bytes; the rest as for `from_urdf`.
+    /// The robot of a text of URDF, xacro, MJCF or SDFormat, str or bytes; the rest as for `from_urdf`.
     #[staticmethod]
     #[pyo3(signature = (
         text, *, name="robot.urdf", policy="default", floating=false, xacro_args=None, packages=None

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import warnings
 
 import mozzi
 import numpy as np
@@ -64,3 +65,18 @@ def test_the_command_line_is_in_the_package():
     assert "mass_matrix" in command("compute", "ur5", "M")
     assert command("check", "nothing.urdf", expected=1).startswith("error: ")
     assert "tip" in command("compute", "ur5", "M", "--cutoff", "1", expected=2)
+
+
+def test_sdformat_is_read_by_its_content(tmp_path):
+    text = """<sdf version="1.9"><model name="arm"><link name="base"/><link name="rod"><inertial><pose>0 0 0.5 0 0 0</pose>
+      <mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.01</izz></inertia></inertial></link>
+      <joint name="fixed_base" type="fixed"><parent>world</parent><child>base</child></joint>
+      <joint name="swing" type="revolute"><parent>base</parent><child>rod</child><axis><xyz>1 0 0</xyz></axis></joint>
+      </model></sdf>"""
+    path = tmp_path / "arm.sdf"
+    path.write_text(text)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the base's own inertia
+        model = mozzi.Model.load(path)
+    assert model.n == 1
+    assert np.isclose(model.mass_matrix([0.0])[0, 0], 0.1 + 2 * 0.5**2)

@@ -13,7 +13,7 @@ pub struct Session {
 
 impl Session {
     /// Opens the robot of a text: JSON of [`mozzi_urdf::json`] if the file's name ends in `.json`, otherwise URDF,
-    /// xacro or MJCF. Returns its number.
+    /// xacro, MJCF or SDFormat. Returns its number.
     ///
     /// # Errors
     /// All errors of the file, each with its place.

@@ -8,7 +8,8 @@ use std::collections::BTreeSet;
 
 #[derive(Args, Debug)]
 pub struct ExplainArguments {
-    /// A diagnostic's code: mozzi::urdf::zero_axis, mozzi::mjcf::zero_axis, mozzi::sdf::zero_axis, or zero_axis; without one, all codes
+    /// A diagnostic's code: mozzi::urdf::zero_axis, mozzi::mjcf::zero_axis, mozzi::sdf::zero_axis, or zero_axis;
+    /// without one, all codes
     code: Option<String>,
 }
 

@@ -1,7 +1,7 @@
 //! From named frames to a tree of links: T of each joint from the poses of its links, its axis in the child's frame.
 
 use super::axis::{Axes, Axis};
-use super::graph::Scope;
+use super::graph::{Scope, What};
 use super::joint::{Joint, Kind};
 use super::{FIXED_BASE, Reader};
 use crate::report::finding::Finding;
@@ -77,7 +77,10 @@ impl Reader<'_> {
             };
             carried[child] = true;
             let origin = parent.map_or(SE3::identity(), |parent| poses[parent]).inverse() * poses[child];
-            let origin = self.written(parent, child).unwrap_or(origin);
+            let origin = match joint.kind {
+                Kind::Planar(_) => self.coinciding(joint, parent.map(|i| poses[i]), poses[child], cx),
+                _ => self.written(parent, child).unwrap_or(origin),
+            };
             let ends =
                 [parent.map_or(WORLD.to_string(), |i| self.links[i].name.clone()), self.links[child].name.clone()];
             if parent.is_none() {
@@ -165,12 +168,31 @@ impl Reader<'_> {
         Some((parent, child))
     }
 
+    /// The child's configuration in the parent for which the two frames that a <drake:joint> names coincide.
+    fn coinciding(&mut self, joint: &Joint, parent: Option<SE3>, child: SE3, cx: &mut Context) -> SE3 {
+        let mut frame = |end: &Option<Value>| {
+            let node = end.as_ref().and_then(|end| self.graph.find(&joint.scope, end.text));
+            node.map_or_else(SE3::identity, |node| self.graph.pose(node, cx))
+        };
+        let (there, here) = (frame(&joint.parent), frame(&joint.child));
+        parent.unwrap_or_else(SE3::identity).inverse() * there * here.inverse() * child
+    }
+
     /// The child's pose as it is written, if it is relative to the parent.
     fn written(&mut self, parent: Option<usize>, child: usize) -> Option<SE3> {
         let (child, parent) = (self.links[child].node, parent.map(|parent| self.links[parent].node)?);
         let node = self.graph.node(child);
         let (scope, name, T) = (node.scope.clone(), node.relative_to.clone()?, node.T);
         (self.graph.find(&scope, name.text) == Some(parent)).then_some(T)
+    }
+
+    /// The joint's pose as it is written, if it is relative to the child link.
+    fn written_in_child(&mut self, joint: &Joint) -> Option<SE3> {
+        let node = self.graph.node(joint.node);
+        let (relative_to, T) = (node.relative_to.clone()?, node.T);
+        let [child, frame] = [joint.child.as_ref()?, &relative_to].map(|name| self.graph.find(&joint.scope, name.text));
+        let child = child.filter(|child| frame == Some(*child))?;
+        matches!(self.graph.node(child).what, What::Link(_)).then_some(T)
     }
 
     /// Adds the joints of one or several axes.
@@ -182,7 +204,11 @@ impl Reader<'_> {
         (description, places): (&mut Description, &mut Places),
         cx: &mut Context,
     ) {
-        let frame = of_child.inverse() * self.graph.pose(joint.node, cx); // the joint's, in the child's
+        // the joint's, in the child's
+        let frame = match self.written_in_child(joint) {
+            Some(T) => T,
+            None => of_child.inverse() * self.graph.pose(joint.node, cx),
+        };
         let one = |kind| description::Joint::new(&joint.name, &parent, &child, origin, kind);
         let screw = |axis: &Axis, kind: &str, reader: &mut Self, cx: &mut Context| {
             let R = match &axis.axes {

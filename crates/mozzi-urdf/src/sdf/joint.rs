@@ -46,7 +46,7 @@ pub(crate) struct Joint<'a> {
     pub place: Place,
 }
 
-const DRAKE_JOINT: Vocabulary = Vocabulary { attributes: &["name", "type"], once: &["pose"], ..NOTHING };
+const DRAKE_JOINT: Vocabulary = Vocabulary { attributes: &["name", "type"], ..NOTHING };
 
 impl<'a> Reader<'a> {
     pub fn joint(&mut self, element: &Element<'a>, scope: &Rc<Scope>, version: Version, cx: &mut Context) {

@@ -15,6 +15,10 @@ pub(super) fn of(d: &Description) -> Vec<String> {
         if let Some(limit) = limits.acceleration.filter(|_| moves) {
             losses.push(format!("joint `{name}`: acceleration limit {limit:?}"));
         }
+        let is_far = |x: &f64| x.abs() >= 1e16 && x.abs() < f64::MAX;
+        if let Some(limits) = limits.position.filter(|limits| is_one && limits.iter().any(is_far)) {
+            losses.push(format!("joint `{name}`: the limits {limits:?}: from 1e16 on they mean none"));
+        }
         if joint.armature != 0.0 && (!is_one || limits.effort == Some(0.0)) {
             let why = if is_one { ", since its effort limit is 0" } else { "" };
             losses.push(format!("joint `{name}`: armature {:?}{why}: M differs", joint.armature));

@@ -13,7 +13,8 @@ const OTHERS: [(&[u8], &str, &str); 5] = [
     (b"SQLite format 3", "an SQLite database, such as a bag of ROS 2", "name the robot's file"),
     (b"{", "JSON", "mozzi's own JSON is read from a file whose name ends in .json"),
 ];
-const EXPORT: &str = "USD is not read: export URDF or MJCF from the program that wrote it";
+const EXPORT: &str = "USD is not read: export URDF or MJCF from the program that wrote it; `nvidia-srl-usd-to-urdf` (PyPI) \
+                      makes a URDF of it";
 
 /// The text without its byte order mark, or the error and the part of the text that can be shown.
 pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
@@ -27,7 +28,7 @@ pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
         return Err(("", Finding::error("not_utf8", 0..0, message).help(help)));
     }
     if let Some((_, what, help)) = OTHERS.iter().find(|(start, ..)| bytes.starts_with(start)) {
-        let message = format!("the file is {what}, expected URDF, xacro or MJCF");
+        let message = format!("the file is {what}, expected URDF, xacro, MJCF or SDFormat");
         return Err(("", Finding::error("wrong_root", 0..0, message).help(*help)));
     }
     let file = bytes;

@@ -13,10 +13,6 @@ use std::ops::Range;
 /// More nodes (elements, texts, comments) are refused: a parsed node takes about ten times the memory of its text.
 const MOST_NODES: u32 = 2_000_000;
 
-/// How to come from USD to a format that is read, and back.
-const USD: &str = "open the URDF or MJCF that it was made from; `urdf-usd-converter` and `mujoco-usd-converter` (PyPI) make \
-                   USD of those";
-
 /// The text to parse: harmless slips are corrected and reported.
 pub(crate) fn mended(source: Source, dialect: Dialect, findings: &mut Findings) -> Source {
     let (source, late) = mend::declaration(source);
@@ -43,10 +39,6 @@ pub(crate) fn parse(source: &Source, dialect: Dialect) -> Result<Document<'_>, F
     if source.text.trim().is_empty() {
         let message = format!("the file is empty, expected a <{}>", dialect.root());
         return Err(Finding::error("empty", source.place(0..0), message));
-    }
-    if source.text.starts_with("#usda") || source.text.starts_with("PXR-USDC") {
-        let message = "the file is USD, which is not read";
-        return Err(Finding::error("wrong_root", source.place(0..5), message).help(USD));
     }
     parse_text(source, dialect).map_err(|finding| Finding { span: source.place(finding.span.clone()), ..finding })
 }

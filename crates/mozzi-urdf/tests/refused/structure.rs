@@ -17,7 +17,7 @@ fn trees() {
     refused(&[
         ("<§robot name='r'/>", "no_links", "robot `r`: links: there are none, expected at least one"),
         ("<§robot><link name='a'/></robot>", "missing_attribute", "robot: has no attribute `name`"),
-        ("<§sdf version='1'/>", "wrong_root", "the root element is <sdf>, expected <robot>"),
+        ("<§COLLADA/>", "wrong_root", "the root element is <COLLADA>, expected <robot>"),
         ("<§Robot/>", "wrong_root", "the root element is <Robot>, expected <robot>"),
         ("<robot name='r'><§link/></robot>", "missing_attribute", "link: has no attribute `name`"),
         ("<robot name='r'><link name='§'/></robot>", "empty_name", "link ``: name: is empty, expected a name"),

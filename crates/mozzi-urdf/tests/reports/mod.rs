@@ -1,8 +1,8 @@
 //! Every diagnostic code of all languages, reached by a broken file, with the exact report that its author reads.
 //!
 //! `tests/broken/CODE.urdf` and `CODE-variant.urdf` are robots with one error, `CODE.txt` next to them is the report;
-//! likewise the models in `tests/broken/mjcf` and `tests/broken/sdf`. A code without a file fails the test. `MOZZI_BLESS=1 cargo test -p
-//! mozzi-urdf reports` rewrites the reports: read them before you commit them.
+//! likewise the models in `tests/broken/mjcf` and `tests/broken/sdf`. A code without a file fails the test.
+//! `MOZZI_BLESS=1 cargo test -p mozzi-urdf reports` rewrites the reports: read them before you commit them.
 
 mod page;
 

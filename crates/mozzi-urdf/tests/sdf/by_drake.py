@@ -6,9 +6,9 @@ import os
 import sys
 
 logging.disable(logging.CRITICAL)
-from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.plant import MultibodyPlant  # first: the parser needs its types
 from pydrake.multibody.tree import BodyIndex
+from pydrake.multibody.parsing import Parser
 
 
 def answer(robot):
@@ -28,7 +28,10 @@ def answer(robot):
         for body in plant.GetFloatingBaseBodies():
             q[plant.get_body(body).floating_positions_start()] = 1
         for (name, instance, part), theta, dtheta in zip(robot["joints"], state["theta"], state["dtheta"]):
-            joint = plant.GetJointByName(name, plant.GetModelInstanceByName(instance))
+            # a joint is in its child's model
+            named = [joint for joint in map(plant.get_joint, plant.GetJointIndices()) if joint.name() == name]
+            own = [joint for joint in named if plant.GetModelInstanceName(joint.model_instance()) == instance]
+            joint = (own if len(named) > 1 else named)[0]
             q[joint.position_start() + part] = theta
             v[joint.velocity_start() + part] = dtheta
             rows.append(joint.velocity_start() + part)
