@@ -28,14 +28,16 @@ pub(crate) fn shortened(table: &mut Table, p: &Polynomial) -> Vec<Term> {
     terms
 }
 
-/// The terms, then the products; a multiple of an angle is one, too.
-fn size(table: &Table, terms: &[Term]) -> (usize, i32) {
+/// The terms, then the products, then the minus signs; a multiple of an angle is a product, too.
+fn size(table: &Table, terms: &[Term]) -> (usize, i32, usize) {
     let doubled = |id: Id| match table.atom(id) {
         Atom::Trig(trig) => trig.harmonic.iter().filter(|k| k.abs() > 1).count() as i32,
         _ => 0,
     };
     let degree = |m: &Monomial| m.factors().map(|(id, k)| k.abs() + doubled(id)).sum::<i32>();
-    (terms.len(), terms.iter().map(|(m, x)| degree(m) + i32::from(!x.abs().is_one() && !m.is_one())).sum())
+    let products = |(m, x): &Term| degree(m) + i32::from(!x.abs().is_one() && !m.is_one());
+    let negative = terms.iter().filter(|(_, x)| x.is_negative()).count();
+    (terms.len(), terms.iter().map(products).sum(), negative)
 }
 
 /// A sine or cosine of one cumulative sum, with its power.
@@ -101,7 +103,7 @@ fn shorter(table: &mut Table, terms: Vec<Term>, group: usize) -> Vec<Term> {
         }
         let candidate = sum.end().0;
         let (new, old) = (size(table, &candidate), size(table, &best));
-        if new < old || is_given && new == old {
+        if new < old || is_given && (new.0, new.1) == (old.0, old.1) {
             (best, is_given) = (candidate, false);
         }
     }

@@ -36,9 +36,9 @@ pub(crate) enum Fault {
     TooLong(usize),
 }
 
-/// A product of more terms is not computed, nor are more terms in all: half a minute.
-const MOST: usize = 2_000_000;
-const MOST_IN_ALL: usize = 100_000_000;
+/// A product of more terms is not computed, nor are more terms in all: a few seconds.
+const MOST: usize = 500_000;
+const MOST_IN_ALL: usize = 20_000_000;
 
 impl Table {
     /// The index of an atom, which is added if it is new.
