@@ -22,9 +22,9 @@ pub struct CheckArguments {
     /// The same as --format json
     #[arg(long, conflicts_with = "format")]
     json: bool,
-    /// Propose repairs of a URDF's numbers, each with its reason and its effect on M: an inertia with a power of ten too
-    /// much, of a wrong sign, with mixed columns, about the wrong point, in mm or g, or the nearest possible one; a mass
-    /// counted twice; reversed limits; an effort of 0. Shapes are read from their files
+    /// Propose repairs of a URDF's numbers, each with its reason and its effect on M: an inertia with a power of ten
+    /// too much, of a wrong sign, with mixed columns, about the wrong point, in mm or g, or the nearest possible one;
+    /// a mass counted twice; reversed limits; an effort of 0. Shapes are read from their files
     #[arg(long)]
     fix: bool,
     /// Propose inertias from the links' shapes, as their convex hulls filled with a density in kg/m³; a given mass is

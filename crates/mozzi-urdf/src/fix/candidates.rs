@@ -48,6 +48,11 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     let is_alike = |G: SpatialInertia| twin.is_some_and(|twin| alike(G, twin));
     let mut best: Option<(f64, Candidate)> = None;
     let mut consider = |candidate: Candidate| {
+        // a product of inertia alone moves no moment closer to the shape's
+        let keeps = |k: usize| candidate.numbers.moments[k] == inertial.numbers.moments[k];
+        if is_possible && candidate.code == "power_of_ten" && [0, 3, 5].into_iter().all(keeps) {
+            return;
+        }
         let G = inertial.inertia(&candidate.numbers);
         if !G.verdict().is_physical() || !is_fitting(G) && !is_alike(G) {
             return;

@@ -1,4 +1,5 @@
-//! Repairs of a URDF's numbers, as proposals: none is made unless it is applied. Each has its reason and its effect on M.
+//! Repairs of a URDF's numbers, as proposals: none is made unless it is applied. Each has its reason and its effect on
+//! M.
 //!
 //! An inertia is doubted only if no body can have it, or if it is far from what the link's shape would have. What is
 //! proposed must be possible and must fit the shape. See [`proposals`].
@@ -87,9 +88,9 @@ impl Robot<'_> {
     }
 }
 
-/// The proposals for a URDF, in the order of the text: an inertia with a power of ten too much, of a wrong sign, with its
-/// numbers in wrong places, about the file's origin, in mm or g, or else the nearest possible one; a mass counted twice
-/// below a fixed joint; reversed limits; a limit of effort of 0. Shapes are searched for next to the file.
+/// The proposals for a URDF, in the order of the text: an inertia with a power of ten too much, of a wrong sign, with
+/// its numbers in wrong places, about the file's origin, in mm or g, or else the nearest possible one; a mass counted
+/// twice below a fixed joint; reversed limits; a limit of effort of 0. Shapes are searched for next to the file.
 ///
 /// # Errors
 /// [`EditError::Load`] if the text cannot be read; [`EditError::Unsupported`] if it is not URDF.
@@ -109,8 +110,8 @@ pub fn proposals(file_name: &str, text: &str, settings: &Settings) -> Result<Vec
     })
 }
 
-/// By how many powers of ten the inertia of each link with a mass is away from that of its shape, uniformly filled; links
-/// whose shapes cannot be read are left out. A possible inertia below 1 is left alone.
+/// By how many powers of ten the inertia of each link with a mass is away from that of its shape, uniformly filled;
+/// links whose shapes cannot be read are left out. A possible inertia below 1 is left alone.
 pub fn misfits(file_name: &str, text: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);

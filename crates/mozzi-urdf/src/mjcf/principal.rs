@@ -1,10 +1,11 @@
-//! The principal moments of a mesh in MuJoCo. It turns the mesh to its principal axes by Jacobi's rotations as quaternions,
-//! stops early, and drops the products of inertia that are left, up to a part of 10⁻⁶. A model means the robot that MuJoCo
-//! makes of it, so the same is dropped here.
+//! The principal moments of a mesh in MuJoCo. It turns the mesh to its principal axes by Jacobi's rotations as
+//! quaternions, stops early, and drops the products of inertia that are left, up to a part of 10⁻⁶. A model means the
+//! robot that MuJoCo makes of it, so the same is dropped here.
 
 use mozzi::linalg::Sym3;
 
-/// Smaller products of inertia, relative to the largest moment, are dropped, and rotations whose cosine is as close to 1 are not made.
+/// Smaller products of inertia, relative to the largest moment, are dropped, and rotations whose cosine is as close to
+/// 1 are not made.
 const SMALL: f64 = 1e-12;
 const MOST_TURNS: usize = 500;
 
