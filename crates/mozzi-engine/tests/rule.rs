@@ -127,7 +127,7 @@ fn a_hundred_thousand_calls_from_eight_threads_agree_with_the_kernels() {
                 let inputs: Vec<Vec<f64>> = (0..query.declaration().inputs.len())
                     .map(|k| states.iter().flat_map(|s| s[k].clone()).collect())
                     .collect();
-                let lengths = query.output_lengths(&model);
+                let lengths: Vec<usize> = query.output_lengths(&model).collect();
                 let mut expected: Vec<Vec<f64>> = lengths.iter().map(|length| vec![0.0; length * STATES]).collect();
                 let mut workspace = mozzi::fast::Workspace::new(&model);
                 for k in 0..STATES {

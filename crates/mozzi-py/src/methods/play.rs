@@ -48,7 +48,8 @@ impl PyModel {
         let name = &model.description().name;
         let text = json::to_value(model.description()).to_string();
         let file = format!("{name}.json");
-        let page = play_html(&Played { name, file: &file, text: &text, model, drawing: &drawing, theta: None });
+        let played = Played { name, file: &file, text: &text, included: &[], model, drawing: &drawing, theta: None };
+        let page = play_html(&played);
         py.import("mozzi._notebook")?.getattr("Page")?.call1((page,))
     }
 }

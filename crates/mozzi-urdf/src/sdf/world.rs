@@ -68,7 +68,8 @@ impl<'a> Reader<'a> {
         };
         let mut is_static = is_set(model);
         if model.name() == "include" {
-            let root = self.includes.get(&model.span().start).and_then(|page| Element::root_of(self.pages, *page, "sdf"));
+            let root =
+                self.includes.get(&model.span().start).and_then(|page| Element::root_of(self.pages, *page, "sdf"));
             let Some(root) = root else { return false }; // Gazebo's own, or reported
             let inner = root.elements().find(|child| child.name() == "model");
             is_static |= inner.is_none_or(|inner| is_set(&inner));
