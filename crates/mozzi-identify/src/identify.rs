@@ -175,10 +175,10 @@ pub fn identify<'m>(
         findings,
         tenths,
     };
-    if !stop() {
-        if let Ok((errors, fits)) = cross_validated(&found.setup, &found.logs, tenths, BLOCKS, stop) {
-            (found.left_out, found.left_out_fits) = (Some(errors), fits);
-        }
+    if !stop()
+        && let Ok((errors, fits)) = cross_validated(&found.setup, &found.logs, tenths, BLOCKS, stop)
+    {
+        (found.left_out, found.left_out_fits) = (Some(errors), fits);
     }
     Ok(found)
 }

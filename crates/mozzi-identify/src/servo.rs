@@ -26,8 +26,8 @@ const LONGEST: f64 = 0.2;
 /// Delays that are tried before the best one is refined.
 const TRIED: usize = 100;
 
-/// The laws of all joints from samples with targets; none without targets or motion. The delay, the same for all joints,
-/// is the one with the least product of the joints' errors; for each delay the rest is linear.
+/// The laws of all joints from samples with targets; none without targets or motion. The delay, the same for all
+/// joints, is the one with the least product of the joints' errors; for each delay the rest is linear.
 pub fn servos(names: &[&str], samples: &[Samples], gains: &[f64]) -> Vec<Servo> {
     let logs: Vec<&Samples> = samples.iter().filter(|log| log.target.is_some()).collect();
     let n = names.len();

@@ -20,8 +20,8 @@ fn of_identification(error: Error) -> PyErr {
     }
 }
 
-/// A log from a mapping of arrays: t, theta, tau, and dtheta, ddtheta, target, `wrench` of the end effector or `wrench_FRAME`
-/// if they are there. Of a floating base, tau may have the joints' columns alone.
+/// A log from a mapping of arrays: t, theta, tau, and dtheta, ddtheta, target, `wrench` of the end effector or
+/// `wrench_FRAME` if they are there. Of a floating base, tau may have the joints' columns alone.
 fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> {
     let need = |name: &str| {
         given

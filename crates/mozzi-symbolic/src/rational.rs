@@ -289,7 +289,7 @@ mod tests {
         let back = &(&y / &x) / &x;
         assert_eq!(back, x);
         assert_eq!(&y - &y, Rational::ZERO);
-        assert!((y.to_f64() / 123456789.123456789123_f64.powi(3) - 1.0).abs() < 1e-15);
+        assert!((y.to_f64() / 123_456_789.123_456_79_f64.powi(3) - 1.0).abs() < 1e-15);
         assert!(Rational::new(-1, 2) < Rational::new(1, 3));
         assert_eq!(Rational::new(-2, 3).power(-3), Rational::new(-27, 8));
     }

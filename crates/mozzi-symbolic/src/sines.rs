@@ -57,7 +57,7 @@ fn shorter(table: &mut Table, terms: Vec<Term>, group: usize) -> Vec<Term> {
     if coordinates.values().any(|k| k.iter().map(|k| k.abs()).sum::<i64>() > 6) {
         return terms; // of third and higher degree nothing is gained
     }
-    let expanded: HashMap<Id, Vec<(BTreeMap<Single, i32>, Rational)>> = coordinates
+    let expanded: HashMap<Id, Vec<Product>> = coordinates
         .iter()
         .map(|(&id, k)| {
             let is_cosine = matches!(table.atom(id), Atom::Trig(trig) if trig.is_cosine);
@@ -152,14 +152,17 @@ fn cumulative(table: &Table, id: Id) -> Vec<i64> {
     k
 }
 
+/// Powers of sines and cosines of single angles, and their factor.
+type Product = (BTreeMap<Single, i32>, Rational);
+
 /// cos or sin of Σ k_i φ_i as a sum of products.
-fn expand(k: &[i64], is_cosine: bool) -> Vec<(BTreeMap<Single, i32>, Rational)> {
+fn expand(k: &[i64], is_cosine: bool) -> Vec<Product> {
     let one = || vec![(BTreeMap::new(), Rational::ONE)];
     let (mut c, mut s) = (one(), Vec::new());
     for (i, times) in k.iter().enumerate() {
         for _ in 0..times.abs() {
             let sign = Rational::new(times.signum(), 1);
-            let with = |sum: &[(BTreeMap<Single, i32>, Rational)], is_cosine: bool, by: &Rational| {
+            let with = |sum: &[Product], is_cosine: bool, by: &Rational| {
                 sum.iter()
                     .map(|(powers, x)| {
                         let mut powers = powers.clone();
@@ -178,13 +181,10 @@ fn expand(k: &[i64], is_cosine: bool) -> Vec<(BTreeMap<Single, i32>, Rational)> 
 }
 
 /// With cos² or sin² of each sum replaced by Pythagoras.
-fn reduced(
-    powers: &BTreeMap<Single, i32>,
-    keeps_cosine: &dyn Fn(usize) -> bool,
-) -> Vec<(BTreeMap<Single, i32>, Rational)> {
+fn reduced(powers: &BTreeMap<Single, i32>, keeps_cosine: &dyn Fn(usize) -> bool) -> Vec<Product> {
     let mut sum = vec![(powers.clone(), Rational::ONE)];
     loop {
-        let high = |(powers, _): &(BTreeMap<Single, i32>, Rational)| {
+        let high = |(powers, _): &Product| {
             powers.iter().find(|((i, is_cosine), k)| *is_cosine != keeps_cosine(*i) && **k > 1).map(|(key, _)| *key)
         };
         let Some(place) = sum.iter().position(|term| high(term).is_some()) else { return sum };

@@ -80,7 +80,7 @@ fn links(model: &Model, robot: &Description<Symbol>, theta: &[Symbol]) -> Result
     let mut inertias = vec![SpatialInertia::zero(); moving.len() + 1];
     for link in &robot.links {
         let (slot, T) = carried[&link.name];
-        inertias[slot] = inertias[slot] + link.inertia.transformed(T);
+        inertias[slot] += link.inertia.transformed(T);
     }
     let center = |slot: usize| match slot {
         0 => SE3::identity(),
@@ -111,10 +111,13 @@ fn links(model: &Model, robot: &Description<Symbol>, theta: &[Symbol]) -> Result
     Ok(found)
 }
 
+/// The title before it, its text and LaTeX, its shape and entries.
+type Line = (Option<String>, String, String, Vec<usize>, Vec<Symbol>);
+
 /// Collects the printed lines.
 #[derive(Default)]
 struct Writer {
-    lines: Vec<(Option<String>, String, String, Vec<usize>, Vec<Symbol>)>,
+    lines: Vec<Line>,
     title: Option<String>,
 }
 

@@ -42,7 +42,7 @@ pub(crate) fn start(table: Table) {
 
 /// The atoms; the expressions are forgotten.
 pub(crate) fn end() -> Table {
-    with(|session| std::mem::take(session)).table
+    with(std::mem::take).table
 }
 
 /// The atoms.

@@ -19,8 +19,11 @@ struct Bar<'f> {
     share: f64,
 }
 
+/// A title, a unit, and what belongs to it.
+type Group = (&'static str, &'static str, fn(Kind) -> bool);
+
 /// Groups of one unit, each with bars of its own length.
-const GROUPS: [(&str, &str, fn(Kind) -> bool); 8] = [
+const GROUPS: [Group; 8] = [
     ("Masses", "kg", |kind| matches!(kind, Kind::Link(k) if k % 10 == 0) || kind == Kind::Payload(0)),
     ("Armature", "kg m²", |kind| matches!(kind, Kind::Armature(_))),
     ("Viscous friction", "N m s/rad or N s/m", |kind| matches!(kind, Kind::Viscous(_))),

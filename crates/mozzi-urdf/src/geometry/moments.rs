@@ -54,7 +54,7 @@ pub(crate) fn moments(vertices: &[Vec3], triangles: &[[usize; 3]], filling: Fill
     let (mut surface, mut middle) = (0.0, Vec3::zero());
     for triangle in triangles.iter().map(whole) {
         surface += area(triangle);
-        middle = middle + third(triangle) * area(triangle);
+        middle += third(triangle) * area(triangle);
     }
     if surface < LEAST {
         return Err(format!("the area of its surface is {surface:.1e} m², expected more"));
@@ -75,7 +75,7 @@ pub(crate) fn moments(vertices: &[Vec3], triangles: &[[usize; 3]], filling: Fill
         let part = size_from(middle, triangle);
         size += part;
         let at = third(triangle);
-        center = center + if filling == Filling::Shell { at } else { at * 0.75 + middle * 0.25 } * part;
+        center += if filling == Filling::Shell { at } else { at * 0.75 + middle * 0.25 } * part;
     }
     if size < LEAST {
         let turned = if size < -LEAST { ": its triangles face inwards" } else { "" };

@@ -128,7 +128,7 @@ impl<'a> Model<'a> {
         for i in 0..given as usize {
             let R = self.compiler.euler(euler.map(|angle| i as f64 * angle));
             let T = around.T * SE3 { R, p };
-            p = p + R.matrix() * offset;
+            p += R.matrix() * offset;
             let suffix = format!("{separator}{i:0digits$}{}", around.suffix).into();
             let around = Around { T, class, depth: around.depth + 1, suffix, copies: copies as usize };
             self.gather(element, &around, contents, cx);

@@ -41,14 +41,11 @@ impl Shapes {
         let mut shapes = Shapes::default();
         let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
         for asset in of("asset").flat_map(Element::elements) {
-            match asset.name() {
-                "material" => {
-                    let Some(name) = asset.attribute("name") else { continue };
-                    let item = classes.item(asset, "material", Class::MAIN, &mut shapes.cx);
-                    let color = item.vector::<4>("rgba", &mut shapes.cx).unwrap_or([1.0; 4]);
-                    shapes.colors.insert(name.text.to_string(), color);
-                }
-                _ => {}
+            if asset.name() == "material" {
+                let Some(name) = asset.attribute("name") else { continue };
+                let item = classes.item(asset, "material", Class::MAIN, &mut shapes.cx);
+                let color = item.vector::<4>("rgba", &mut shapes.cx).unwrap_or([1.0; 4]);
+                shapes.colors.insert(name.text.to_string(), color);
             }
         }
         shapes

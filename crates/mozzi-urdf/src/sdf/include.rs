@@ -141,7 +141,7 @@ fn configured(folder: &Path) -> Option<String> {
     let text = files::read(&folder.join("model.config"), 1 << 16).ok()?;
     let text = String::from_utf8(text).ok()?;
     let document = roxmltree::Document::parse(&text).ok()?;
-    let name = document.descendants().filter(|node| node.has_tag_name("sdf")).last()?.text()?.trim();
+    let name = document.descendants().rfind(|node| node.has_tag_name("sdf"))?.text()?.trim();
     // only a file of this folder
     (!name.contains(['/', '\\'])).then(|| name.to_string())
 }

@@ -84,10 +84,9 @@ fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
     let is_world = |link: &str| has_world(d) && link == "world";
     for each in d.links.iter().filter(|link| !is_world(&link.name)) {
         let joint = above.get(each.name.as_str()).copied();
-        let place = match joint.filter(|joint| joint.kind != JointKind::Free) {
-            None => None,
-            Some(joint) => Some((joint.origin, (!is_world(&joint.parent)).then(|| names.link(&joint.parent)))),
-        };
+        let place = joint
+            .filter(|joint| joint.kind != JointKind::Free)
+            .map(|joint| (joint.origin, (!is_world(&joint.parent)).then(|| names.link(&joint.parent))));
         link(text, each, names, place)?;
     }
     if let Some(base) = base_link(d).filter(|_| d.base == Base::Fixed && !has_world(d)) {

@@ -183,8 +183,8 @@ fn compare_start(name: &str, model: &Model, expected: &Value) {
     }
 }
 
-/// MuJoCo turns a mesh to its principal axes up to 1e-6, and drops the products of inertia that are left; where it stops
-/// depends on rounding. In ε.
+/// MuJoCo turns a mesh to its principal axes up to 1e-6, and drops the products of inertia that are left; where it
+/// stops depends on rounding. In ε.
 const BOUND_OF_MESHES: f64 = 1e-6 / f64::EPSILON;
 
 /// Whether the model's file has meshes, whose inertias may be computed.

@@ -258,14 +258,12 @@ fn two_hundred_faults_of_twenty_robots() {
     assert_eq!(robots.len(), ROBOTS);
     let (mut draw, mut repaired, mut total, mut lost) = (Draw(20_261_127), [0; 10], [0; 10], Vec::new());
     for (kind, name) in KINDS.into_iter().enumerate() {
-        let mut at = 0;
-        for _ in 0..ROBOTS * 100 {
+        for at in 0..ROBOTS * 100 {
             if total[kind] == ROBOTS {
                 break;
             }
             // each robot in turn; one in which this fault is not possible is passed over
             let robot = &robots[at % ROBOTS];
-            at += 1;
             let Some((text, element)) = (0..60).find_map(|_| fault(robot, kind, &mut draw)) else { continue };
             total[kind] += 1;
             let found = proposals(&robot.name, &text, &Settings::default()).unwrap_or_default();

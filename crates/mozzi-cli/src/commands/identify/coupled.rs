@@ -15,7 +15,7 @@ pub fn with_rotors(robot: &Model, coupled: &[String]) -> Result<Model> {
         let mut gears = Vec::new();
         for part in text.split(',') {
             let (joint, ratio) = match part.split_once('=') {
-                Some((joint, ratio)) => (joint.trim(), number(&format!("--coupled {joint}"), ratio)?),
+                Some((joint, ratio)) => (joint.trim(), number(format!("--coupled {joint}"), ratio)?),
                 None => (part.trim(), 1.0),
             };
             if !description.joints.iter().any(|one| one.name == joint) {

@@ -185,7 +185,8 @@ fn isaac(motors: &[Motor]) -> Vec<String> {
     all.push(format!("actuators = {{\"identified\": {class}("));
     all.push(format!("    joint_names_expr=[{}],", names.join(", ")));
     let gain = |servo: Option<&Servo>, of: fn(&Servo) -> f64| Some(servo.map_or(0.0, of));
-    let rows: [(&str, &dyn Fn(&Motor) -> Option<f64>); 7] = [
+    type Value<'v> = &'v dyn Fn(&Motor) -> Option<f64>;
+    let rows: [(&str, Value); 7] = [
         ("stiffness", &|motor| gain(motor.servo, |servo| servo.stiffness[0])),
         ("damping", &|motor| gain(motor.servo, |servo| servo.damping[0])),
         ("effort_limit", &|motor| motor.effort()),

@@ -59,7 +59,7 @@ pub fn text(it: &FilesComparison) -> String {
     let is_there =
         |gap: &Gap| gap.most > it.tolerance * gap.scale.max(if it.forces_agree() { f64::INFINITY } else { 0.0 });
     if it.forces_agree() {
-        page.line("  M, gravity torques and torques agree".to_string());
+        page.line("  M, gravity torques and torques agree");
     }
     for ((gap, what), unit) in it.before.iter().zip(labels).zip(&it.units).filter(|((gap, _), _)| is_there(gap)) {
         let place = gap.joints.join(", ");
