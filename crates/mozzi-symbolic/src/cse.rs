@@ -1,7 +1,7 @@
 //! Names for sub-expressions that occur more than once: equal ones are one node; then pairs of factors or terms that
 //! several nodes share become nodes, the most frequent first.
 
-use crate::derive::Formula;
+use crate::derivation::Formula;
 use crate::expression::Expression;
 use crate::rational::Rational;
 use std::collections::{BTreeMap, HashMap};

@@ -1,6 +1,7 @@
 //! The robot's numbers as symbols with the book's names, or as exact numbers.
 
 use crate::atom::{Atom, Class, Id, Name};
+use crate::letters::plain_name;
 use crate::rational::Rational;
 use crate::read::{At, NotRead, Part, read_urdf};
 use crate::symbol::{Symbol, with_table};
@@ -66,7 +67,7 @@ pub struct Meaning {
 impl Meaning {
     /// Its name in code: `I1_zz`.
     pub fn plain_name(&self) -> String {
-        crate::print::plain_name(&self.name)
+        plain_name(&self.name)
     }
 }
 

@@ -2,8 +2,12 @@
 //! the blocks of the stacked matrices. The torques are compared with the kernel's, exactly.
 
 use crate::angles;
-use crate::derive::{Collect, Error, Formula, Options, check_fault, described, kernel, legend_of, written};
+use crate::derivation::Formula;
+use crate::derive::{Collect, Options, described, legend_of, written};
+use crate::error::Error;
 use crate::expression::Expression;
+use crate::kernel::{check_fault, kernel};
+use crate::letters::below;
 use crate::parameters::Meaning;
 use crate::symbol::{Symbol, end, with_table};
 use crate::table::Table;
@@ -162,8 +166,8 @@ pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Ste
     writer.six("𝒱₀".into(), r"\mathcal V_0".into(), V[0].to_array());
     writer.six("𝒱̇₀".into(), r"\dot{\mathcal V}_0".into(), dV[0].to_array());
     for (i, link) in (1..).zip(&links) {
-        let (p, at) = (link.parent, crate::print::below(i));
-        let of_parent = format!("{at},{}", crate::print::below(p));
+        let (p, at) = (link.parent, below(i));
+        let of_parent = format!("{at},{}", below(p));
         writer.title = Some(format!("outward, link {i}: {}", link.name));
         let matrix = link.T.to_matrix().concat();
         writer.add(format!("T{of_parent}"), format!("T_{{{i},{p}}}"), vec![4, 4], matrix);
@@ -181,7 +185,7 @@ pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Ste
     let mut tau = vec![Symbol::zero(); model.n()];
     for (k, link) in links.iter().enumerate().rev() {
         let i = k + 1;
-        let at = crate::print::below(i);
+        let at = below(i);
         writer.title = Some(format!("inward, link {i}: {}", link.name));
         let G = link.G.to_matrix().concat();
         writer.add(format!("𝒢{at}"), format!(r"\mathcal G_{{{i}}}"), vec![6, 6], G);
@@ -192,7 +196,7 @@ pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Ste
     }
     writer.title = Some("torques, 𝒜ᵀ𝓕".into());
     for (j, tau) in tau.iter().enumerate() {
-        writer.add(format!("τ{}", crate::print::below(j + 1)), format!(r"\tau_{{{}}}", j + 1), Vec::new(), vec![*tau]);
+        writer.add(format!("τ{}", below(j + 1)), format!(r"\tau_{{{}}}", j + 1), Vec::new(), vec![*tau]);
     }
     stacked(&mut writer, &links);
     let found = kernel(&query, &robot.build()?, &inputs, None).swap_remove(0);
@@ -208,7 +212,7 @@ fn stacked(writer: &mut Writer, links: &[Link]) {
     let block = |T: SE3<Symbol>| T.Ad().to_matrix().concat();
     writer.title = Some("𝒲(θ): the blocks that are not 0; 𝒜 and 𝒢 have 𝒜_i and 𝒢_i on their diagonals".into());
     for (i, link) in (1..).zip(links).filter(|(_, link)| link.parent > 0) {
-        let (a, b) = (crate::print::below(i), crate::print::below(link.parent));
+        let (a, b) = (below(i), below(link.parent));
         writer.add(format!("𝒲{a},{b}"), format!(r"\mathcal W_{{{i},{}}}", link.parent), vec![6, 6], block(link.T));
     }
     writer.title =
@@ -218,7 +222,7 @@ fn stacked(writer: &mut Writer, links: &[Link]) {
         while at > 0 && links[at - 1].parent > 0 {
             let other = links[at - 1].parent;
             T = T * links[at - 1].T;
-            let (a, b) = (crate::print::below(i), crate::print::below(other));
+            let (a, b) = (below(i), below(other));
             writer.add(format!("ℒ{a},{b}"), format!(r"\mathcal L_{{{i},{other}}}"), vec![6, 6], block(T));
             at = other;
         }

@@ -2,8 +2,8 @@
 
 use crate::atom::{Angle, Atom, Id};
 use crate::evaluate;
+use crate::point::Point;
 use crate::polynomial::{Monomial, Polynomial, Sum};
-use crate::proof::Point;
 use crate::rational::Rational;
 use crate::table::{Fault, Table};
 use mozzi::{Real, Scalar};

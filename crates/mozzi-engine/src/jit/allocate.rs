@@ -3,11 +3,12 @@
 
 use super::instruction::{Node, Operation, SINES, Value};
 use super::lower::{Lowered, Store};
+use super::operand::{Operand, Register};
 use super::places::{Places, put_constants};
 use super::registers::{NEVER, Pinned, Registers};
 use super::rows::Extent;
 use super::shape::{Encoding, Shape};
-use super::target::{Assembler, LARGEST_FRAME, MOST_ARRAYS, Operand, Register, Tally};
+use super::target::{Assembler, LARGEST_FRAME, MOST_ARRAYS, Tally};
 use super::{Form, Refusal};
 use std::cell::Cell;
 

@@ -6,6 +6,7 @@ mod cache;
 mod executable;
 mod instruction;
 mod lower;
+mod operand;
 mod order;
 mod places;
 mod registers;

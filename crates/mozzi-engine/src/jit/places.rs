@@ -2,8 +2,8 @@
 
 use super::instruction::Node;
 use super::lower::Lowered;
+use super::operand::Memory;
 use super::shape::Shape;
-use super::target::Memory;
 
 /// For each constant node, its byte offset in the pool.
 pub(crate) fn put_constants(shape: Shape, lowered: &Lowered, pool: &mut Vec<u8>) -> Vec<usize> {

@@ -1,7 +1,7 @@
 //! What the registers hold, and which is freed for a new value.
 
 use super::instruction::Value;
-use super::target::Register;
+use super::operand::Register;
 
 /// The need of a value that nothing needs any more.
 pub(crate) const NEVER: u32 = u32::MAX;

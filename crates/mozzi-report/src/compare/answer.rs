@@ -2,7 +2,9 @@
 
 use crate::compare::constants::{Constants, JointConstants, body};
 use crate::compare::convention::velocity_names;
-use crate::compare::numbers::{Numbers, Side};
+use crate::compare::numbers::Side;
+use crate::compare::question::name_of;
+use crate::compare::terms::Numbers;
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -78,10 +80,6 @@ pub struct Answer {
     /// Its message for the unchanged file, and the workaround that was applied.
     pub attempts: Vec<(String, Workaround)>,
     pub robot: Result<Robot, Unavailable>,
-}
-
-pub fn name_of(library: &str) -> &'static str {
-    if library == "pinocchio" { "Pinocchio" } else { "MuJoCo" }
 }
 
 impl Answer {

@@ -1,7 +1,7 @@
 //! Converts a model's states and results to the coordinates of a library.
 
 use crate::compare::Result;
-use crate::compare::numbers::Numbers;
+use crate::compare::terms::Numbers;
 use mozzi::conventions::{MuJoCo, Pinocchio};
 use mozzi::{Freedom, Model, Place};
 

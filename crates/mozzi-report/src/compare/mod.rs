@@ -29,6 +29,7 @@ mod report_json;
 mod report_text;
 mod source;
 mod state;
+mod terms;
 #[cfg(test)]
 mod tests;
 mod verdict;

@@ -4,24 +4,16 @@ use crate::compare::Result;
 use crate::compare::convention::{Convention, velocity_names};
 use crate::compare::question::Question;
 use crate::compare::state::State;
+use crate::compare::terms::Numbers;
 use mozzi::accuracy::{TermSizes, normalized_error};
 use mozzi::{Description, Place};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 /// The tolerance in ε of the size of the terms. Rounding, including that of files' digits through quaternions and
 /// eigenvectors, stays a hundred times below it; a wrong digit in a file is a thousand times above it.
 pub const BOUND: f64 = 1e6;
 
 pub const QUANTITIES: [&str; 4] = ["M", "g", "h", "τ"];
-
-/// At one state.
-#[derive(Clone, Debug)]
-pub struct Numbers {
-    pub M: DMatrix<f64>,
-    pub g: DVector<f64>,
-    pub h: DVector<f64>,
-    pub tau: DVector<f64>,
-}
 
 /// At all states, in the order of these joints.
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! Runs the libraries: a script in a Python process, a question in, an answer out.
 
-use crate::compare::answer::{Answer, Fault, Unavailable, name_of};
+use crate::compare::answer::{Answer, Fault, Unavailable};
 use crate::compare::question::Question;
+use crate::compare::question::name_of;
 use crate::compare::{Error, Result};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};

@@ -1,6 +1,5 @@
 //! The input for a library: the file, and states of every joint by name.
 
-use crate::compare::answer::name_of;
 use crate::compare::constants::{Constants, freed};
 use crate::compare::convention::{Convention, Lists};
 use crate::compare::state::State;
@@ -66,4 +65,9 @@ impl Question {
             "joints": joints, "names": self.names, "home": home, "states": states,
         }))
     }
+}
+
+/// The name of a library of the script.
+pub fn name_of(library: &str) -> &'static str {
+    if library == "pinocchio" { "Pinocchio" } else { "MuJoCo" }
 }

@@ -3,36 +3,15 @@
 
 use super::{Language, Printer, Style};
 use crate::atom::{Class, Id, Name};
-use crate::derive::{Derivation, Formula};
+use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
+use crate::letters::plain_name;
 use crate::parameters::Meaning;
 use crate::rational::Rational;
 use std::collections::BTreeSet;
 
 pub(crate) struct Code {
     language: Language,
-}
-
-/// A name in letters, digits and underscores: `theta1`, `dtheta1`, `I1_xx`.
-pub(crate) fn plain_name(name: &Name) -> String {
-    let letter = match name.letter {
-        "θ" => "theta",
-        "τ" => "tau",
-        "φ" => "phi",
-        "μ" => "mu",
-        other => other,
-    };
-    let dots = "d".repeat(name.dots.into());
-    let number = name.number.map_or(String::new(), |n| n.to_string());
-    let clean = |c: char| match c {
-        'ω' => 'w',
-        '\'' => 'q',
-        c if c.is_ascii_alphanumeric() => c,
-        _ => '_',
-    };
-    let part: String = name.part.chars().map(clean).collect();
-    let part = if part.is_empty() { part } else { format!("_{part}") };
-    format!("{dots}{letter}{number}{part}")
 }
 
 impl Style for Code {

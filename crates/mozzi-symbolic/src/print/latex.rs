@@ -2,7 +2,7 @@
 
 use super::{Letter, Printer, Style};
 use crate::atom::Name;
-use crate::derive::{Derivation, Formula};
+use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
 use crate::parameters::Meaning;
 use crate::rational::Rational;

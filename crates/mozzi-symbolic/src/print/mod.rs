@@ -6,11 +6,8 @@ mod legend;
 mod sympy;
 mod text;
 
-pub(crate) use code::plain_name;
-pub(crate) use text::below;
-
 use crate::atom::{Angle, Atom, Id, Name, Trig};
-use crate::derive::{Derivation, Formula};
+use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
 use crate::polynomial::Polynomial;
 use crate::rational::Rational;

@@ -1,9 +1,9 @@
 //! A Python module of SymPy expressions, with exact numbers.
 
-use super::code::plain_name;
 use super::{Printer, Style};
 use crate::atom::Name;
-use crate::derive::Derivation;
+use crate::derivation::Derivation;
+use crate::letters::plain_name;
 use crate::rational::Rational;
 
 pub(crate) struct Sympy;

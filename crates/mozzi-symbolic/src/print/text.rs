@@ -3,8 +3,9 @@
 use super::legend::legend;
 use super::{Letter, Printer, Style};
 use crate::atom::Name;
-use crate::derive::{Derivation, Formula};
+use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
+use crate::letters::below;
 use crate::rational::Rational;
 use crate::steps::Steps;
 
@@ -13,13 +14,7 @@ pub(crate) struct Text {
     pub has_fractions: bool,
 }
 
-const SUBSCRIPTS: [char; 10] = ['₀', '₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈', '₉'];
 const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-
-/// Digits below the line.
-pub(crate) fn below(n: usize) -> String {
-    n.to_string().bytes().map(|digit| SUBSCRIPTS[usize::from(digit - b'0')]).collect()
-}
 
 fn above(k: i32) -> String {
     let digits = k.unsigned_abs().to_string();

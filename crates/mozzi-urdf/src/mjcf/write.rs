@@ -11,8 +11,7 @@ use std::fmt::{self, Write};
 /// The MJCF text of a robot, which MuJoCo reads, too: bodies, joints, sites, mimic joints as equalities, rotors as
 /// fixed tendons. A base link `world` is MuJoCo's own; another fixed base is a body of it. Links without mass between
 /// joints become further joints of the next body, since MuJoCo refuses them. A helical joint becomes a hinge and a
-/// slide
-/// that follows it.
+/// slide that follows it.
 ///
 /// # Errors
 /// [`NotWritten`] if the robot would be another one: free joints inside the tree, control characters in names.

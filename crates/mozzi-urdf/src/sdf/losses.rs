@@ -1,6 +1,6 @@
 //! What SDFormat cannot say about a robot.
 
-use super::write::{base_link, has_world, start_pose};
+use super::base::{base_link, has_world, start_pose};
 use crate::urdf::write::ball_constraint;
 use crate::written::names_of;
 use mozzi::model::description::{FreeJoint, JointKind};

@@ -20,6 +20,7 @@
 //! - Not read: inertias from shapes (`auto`), gearboxes; shapes, sensors. Plugins are named.
 mod assemble;
 mod axis;
+mod base;
 mod explain;
 mod graph;
 mod include;

@@ -1,7 +1,7 @@
 //! The names of a robot in SDFormat: one space of names for links, joints and frames, without SDFormat's own.
 
-use super::write::{has_world, safe};
-use crate::urdf::write::free;
+use super::base::has_world;
+use crate::urdf::write::{escaped, free};
 use crate::written::names_of;
 use mozzi::Description;
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,4 +66,9 @@ impl Names {
 fn plain(name: &str) -> String {
     let name = name.replace("::", ".");
     if name.starts_with("__") && name.ends_with("__") { name.trim_matches('_').to_string() } else { name }
+}
+
+/// As the value of an attribute or an element.
+pub(super) fn safe(name: &str) -> String {
+    escaped(name).replace('>', "&gt;")
 }

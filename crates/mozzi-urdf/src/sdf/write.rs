@@ -1,10 +1,11 @@
 //! Writes SDFormat text.
 
 use super::FIXED_BASE;
+use super::base::{base_link, has_world, start_pose};
 use super::names::Names;
-use crate::urdf::write::{ball_constraint, escaped, triple};
+use crate::urdf::write::{ball_constraint, triple};
 use crate::written::{NotWritten, Written};
-use mozzi::model::description::{Joint, JointKind, Link, NamedState};
+use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, Vec3};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -32,18 +33,6 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
     Ok(Written { text, losses, remarks })
 }
 
-/// Is the base SDFormat's world: a link of this name without mass?
-pub(super) fn has_world(d: &Description) -> bool {
-    let base = base_link(d);
-    d.base == Base::Fixed && base.is_some_and(|link| link.name == "world" && link.inertia.mass == 0.0)
-}
-
-/// The link that is no joint's child.
-pub(super) fn base_link(d: &Description) -> Option<&Link> {
-    let children: std::collections::BTreeSet<&str> = d.joints.iter().map(|joint| joint.child.as_str()).collect();
-    d.links.iter().find(|link| !children.contains(link.name.as_str()))
-}
-
 fn reasons(d: &Description) -> Vec<String> {
     let mut reasons = Vec::new();
     let is_control = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
@@ -59,12 +48,6 @@ fn reasons(d: &Description) -> Vec<String> {
         }
     }
     reasons
-}
-
-/// The pose of a floating base in the state in which the robot starts, if it is not the identity.
-pub(super) fn start_pose(d: &Description) -> Option<(&NamedState, [f64; 7])> {
-    let state = d.states.iter().find(|state| Some(&state.name) == d.start.as_ref())?;
-    state.base.map(|base| (state, base.pose))
 }
 
 fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
@@ -240,9 +223,4 @@ fn pose_element(text: &mut String, indent: &str, T: SE3, relative_to: Option<&st
     }
     let rpy = if T.R == SE3::identity().R { [0.0; 3] } else { T.R.to_rpy() };
     writeln!(text, "{indent}<pose{frame}>{} {}</pose>", triple(T.p), triple(Vec3(rpy)))
-}
-
-/// As the value of an attribute or an element.
-pub(super) fn safe(name: &str) -> String {
-    escaped(name).replace('>', "&gt;")
 }

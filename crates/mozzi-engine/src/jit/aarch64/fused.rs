@@ -3,8 +3,8 @@
 use super::Arm;
 use crate::jit::allocate::Line;
 use crate::jit::instruction::{Operation, Value};
+use crate::jit::operand::Register;
 use crate::jit::registers::Pinned;
-use crate::jit::target::Register;
 
 impl Line<'_, Arm> {
     /// A result takes the place of an operand that is no longer needed. Of several lanes, a fused product must be where

@@ -12,9 +12,10 @@ mod tests;
 
 use super::allocate::Line;
 use super::instruction::{Grain, Half, Operation, Value};
+use super::operand::{Memory, Operand, Register};
 use super::registers::Pinned;
 use super::shape::Shape;
-use super::target::{Assembler, LARGEST_FRAME, MOST_ARRAYS, Memory, Operand, Register, Tally};
+use super::target::{Assembler, LARGEST_FRAME, MOST_ARRAYS, Tally};
 use encode::{add_immediate, lane_two, load_or_store};
 
 /// A general register.

@@ -3,8 +3,9 @@
 use super::X86;
 use crate::jit::allocate::Line;
 use crate::jit::instruction::{Operation, Value};
+use crate::jit::operand::{Operand, Register};
 use crate::jit::registers::Pinned;
-use crate::jit::target::{Assembler, Operand, Register};
+use crate::jit::target::Assembler;
 
 impl Line<'_, X86> {
     /// ± a b ± c overwrites one of its operands: one that is no longer needed, or a copy.

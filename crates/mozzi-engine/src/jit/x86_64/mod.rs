@@ -8,9 +8,10 @@ mod tests;
 
 use super::allocate::Line;
 use super::instruction::{Grain, Half, Operation, Value};
+use super::operand::{Memory, Operand, Register};
 use super::registers::Pinned;
 use super::shape::{Encoding, Shape};
-use super::target::{Assembler, MOST_ARRAYS, Memory, Operand, Register, Tally};
+use super::target::{Assembler, MOST_ARRAYS, Tally};
 
 /// General registers for the arrays' addresses; rdi, which passes them, is the last of those that need not be saved.
 /// `rsp` and `r12` are left out: as base registers they need another encoding.

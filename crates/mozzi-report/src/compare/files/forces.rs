@@ -1,8 +1,8 @@
 //! M, gravity and torques of both robots at the same states.
 
 use crate::compare::Result;
-use crate::compare::numbers::Numbers;
 use crate::compare::state::State;
+use crate::compare::terms::Numbers;
 use mozzi::random::Random;
 use mozzi::{Description, Model};
 

@@ -1,0 +1,68 @@
+//! Formulas of a quantity.
+
+use crate::atom::{Class, Id};
+use crate::expression::{Expression, Operations};
+use crate::parameters::Meaning;
+use crate::rational::Rational;
+use crate::table::Table;
+
+/// An output of a quantity in symbols.
+#[derive(Clone, Debug)]
+pub struct Formula {
+    /// Its declared name: `M`, `c` …
+    pub name: &'static str,
+    /// Its shape; empty for a number.
+    pub shape: Vec<usize>,
+    /// Whether it is a symmetric matrix.
+    pub is_symmetric: bool,
+    pub(crate) entries: Vec<Expression>,
+}
+
+/// The formulas of a quantity, proven.
+#[derive(Clone, Debug)]
+pub struct Derivation {
+    /// The quantity's name.
+    pub quantity: &'static str,
+    /// Its outputs.
+    pub formulas: Vec<Formula>,
+    pub(crate) names: Vec<Expression>,
+    /// The numbers of the state, by input.
+    pub(crate) inputs: Vec<(&'static str, Vec<Id>)>,
+    /// Angles that were read as multiples of π, in multiples.
+    pub angles: Vec<(String, Rational)>,
+    /// The sum of these readings' differences from the file, rad.
+    pub(crate) angle_error: f64,
+    /// The symbols that occur.
+    pub legend: Vec<Meaning>,
+    /// Whether its numbers are those of formulas, ½, and not the file's.
+    pub(crate) has_fractions: bool,
+    pub(crate) table: Table,
+}
+
+impl Derivation {
+    /// The operations of all that is printed; entries below the diagonal of symmetric matrices are not counted.
+    pub fn operations(&self) -> Operations {
+        let mut atoms = std::collections::BTreeSet::new();
+        let mut all = Operations::default();
+        let mut add = |expression: &Expression| {
+            let count = expression.count();
+            all.additions += count.additions;
+            all.products += count.products;
+            expression.atoms(&mut atoms);
+        };
+        self.names.iter().for_each(&mut add);
+        for formula in &self.formulas {
+            formula.distinct().for_each(|k| add(&formula.entries[k]));
+        }
+        all.sines = atoms.iter().filter(|&&id| self.table.class(id) == Class::Trigonometric).count();
+        all
+    }
+}
+
+impl Formula {
+    /// The entries that are printed by themselves: of a symmetric matrix those on and above the diagonal.
+    pub(crate) fn distinct(&self) -> impl Iterator<Item = usize> + '_ {
+        let columns = self.shape.last().copied().unwrap_or(1).max(1);
+        (0..self.entries.len()).filter(move |k| !self.is_symmetric || k / columns <= k % columns)
+    }
+}

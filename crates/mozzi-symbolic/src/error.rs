@@ -1,0 +1,82 @@
+//! Why there is no derivation.
+
+use crate::read::NotRead;
+use std::fmt;
+
+/// Longer entries are not derived: a person reads none of them, and grouping takes longer and longer.
+pub(crate) const LONGEST: usize = 30_000;
+
+/// The reason why there is no derivation.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Error {
+    /// The second reader does not read the file.
+    NotRead(NotRead),
+    /// mozzi's own error.
+    Model(mozzi::Error),
+    /// The quantity is no polynomial in sines and parameters.
+    NotPolynomial {
+        /// The quantity.
+        quantity: &'static str,
+        /// What its kernel does.
+        what: String,
+    },
+    /// The robot has no recursion in the book's form.
+    NoRecursion(String),
+    /// The expressions would be too long.
+    TooLong {
+        /// The quantity.
+        quantity: &'static str,
+        /// The terms of its largest entry.
+        terms: usize,
+    },
+    /// An expression differs from the kernel: an error of this library.
+    NotProven {
+        /// The quantity.
+        quantity: &'static str,
+        /// The entry.
+        entry: usize,
+        /// What was found.
+        what: String,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::NotRead(error) => write!(f, "the file's decimals: {error}"),
+            Error::Model(error) => error.fmt(f),
+            Error::NotPolynomial { quantity, what } => {
+                let quantity = quantity.replace('_', "-");
+                write!(
+                    f,
+                    "{quantity} {what}: it is no sum of products of sines and parameters. Derived are quantities \
+                     without an inverse, such as mass-matrix, velocity-product, gravity-forces and inverse-dynamics"
+                )
+            }
+            Error::NoRecursion(what) => write!(
+                f,
+                "the recursion is printed for joints that slide, or turn about an axis of their link, on a fixed base; \
+                 the robot has {what}"
+            ),
+            Error::TooLong { quantity, terms } => {
+                let quantity = quantity.replace('_', "-");
+                write!(
+                    f,
+                    "{quantity} would have sums of {terms} terms, expected at most {LONGEST}. Numbers instead of symbols \
+                     are shorter (symbols: none), and so are robots with locked joints"
+                )
+            }
+            Error::NotProven { quantity, entry, what } => {
+                write!(f, "entry {entry} of {quantity} is not proven, and is not printed: {what}. Please report this")
+            }
+        }
+    }
+}
+impl std::error::Error for Error {}
+
+impl From<mozzi::Error> for Error {
+    fn from(error: mozzi::Error) -> Self {
+        Error::Model(error)
+    }
+}
