@@ -213,6 +213,7 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) 
         return Err(Failure::wrong(format!("{name} has no rows below its header")));
     }
     found.notes.iter().for_each(|note| failure::note(note));
+    rows.shrink_to_fit(); // up to half of it is empty, and the samples are a copy
     let mut place = vec![0; header.names.len()];
     used.iter().enumerate().for_each(|(k, &column)| place[column] = k);
     let samples = found.samples(&name, lines.len(), |row, column| rows[row * used.len() + place[column]]);
