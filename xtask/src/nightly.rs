@@ -32,8 +32,13 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
     report.step("long simulations", || {
-        let mut cargo = workspace.cargo(&["test", "--package", "mozzi", "--lib"]);
-        command::outcome(cargo.args(["--", "--ignored", "--nocapture", "simulation"]))
+        let mut cargo = workspace.cargo(&["test", "--package", "mozzi-sim"]);
+        command::outcome(cargo.args(["--", "--ignored", "--nocapture"]))
+    });
+    report.step("repairs of 200 faults", || {
+        let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf", "--test", "all"]);
+        cargo.envs(oracles::robots(workspace).map(|robots| ("MOZZI_ROBOTS", robots)));
+        command::outcome(cargo.args(["--", "--ignored", "--nocapture", "two_hundred_faults"]))
     });
     report.step("accuracy at 1000 states", || {
         let page = workspace.path(FOLDER).join("accuracy.md");
