@@ -2,9 +2,10 @@
 
 use mozzi_engine::Shape;
 
-/// The optional formats, and whether this build has them.
-const FEATURES: [(&str, bool); 4] = [
+/// The optional parts, and whether this build has them.
+const FEATURES: [(&str, bool); 5] = [
     ("arrow", cfg!(feature = "arrow")),
+    ("derive", cfg!(feature = "derive")),
     ("mcap", cfg!(feature = "mcap")),
     ("parquet", cfg!(feature = "parquet")),
     ("png", cfg!(feature = "png")),

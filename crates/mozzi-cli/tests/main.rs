@@ -11,6 +11,7 @@ mod compute;
 mod constraints;
 mod convert;
 mod damaged;
+#[cfg(feature = "derive")]
 mod derive;
 mod events;
 mod first;

@@ -106,7 +106,7 @@ fn command_line(workspace: &Workspace, stage: &Path, package: &Package) -> Resul
         "--package",
         "mozzi-cli",
         "--features",
-        "arrow",
+        "arrow,derive",
         "--target",
     ]);
     cargo.arg(package.target()).arg("--target-dir").arg(workspace.path(dist::CARGO));
