@@ -166,7 +166,7 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
         ),
         job("argument", &panda, json!({ "texts": { "row.xacro": ROW, "rod.xacro": ROD }, "name": "row" })),
         job("wrong_file", &panda, json!({ "texts": { "ur5.urdf": wrong } })),
-        job("drag", &ur5, json!({ "body": 2 })),
+        job("drag", &ur5, json!({ "body": 3 })),
         job("share", &ur5, json!({ "theta": posed, "edit": mass })),
         job("edit", &ur5, json!({})),
         job("panels", &ur5, json!({ "quantity": "body_jacobian", "theta": posed })),

@@ -110,10 +110,10 @@ fn long_cells_and_numbers_are_short() {
         assert!(said.len() < 6000 && said.contains(name), "{} bytes", said.len());
         said
     };
-    let long = "x".repeat(50_000_000);
+    let long = "x".repeat(2_000_000);
     let said = in_table("cell.csv", &format!("theta_1,theta_2\n1,{long}\n"));
     assert!(
-        said.contains("cell.csv:2: column 2 (`theta_2`) is `xxxx") && said.contains("50000000 characters"),
+        said.contains("cell.csv:2: column 2 (`theta_2`) is `xxxx") && said.contains("2000000 characters"),
         "{said}"
     );
     in_table("header.csv", &format!("theta_1,{long}\n1,2\n"));
