@@ -190,7 +190,7 @@ const BOUND_OF_MESHES: f64 = 1e-6 / f64::EPSILON;
 /// Whether the model's file has meshes, whose inertias may be computed.
 fn is_of_meshes(oracle: &Value) -> bool {
     let text = oracle["mjcf"].as_str().and_then(|path| std::fs::read_to_string(path).ok());
-    text.is_some_and(|text| text.contains("<mesh"))
+    text.is_some_and(|text| text.contains("<mesh") || text.contains("<include"))
 }
 
 /// Every file of a folder; a line for each robot, and the worst of all.
