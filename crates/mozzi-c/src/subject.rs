@@ -1,4 +1,4 @@
-//! What a quantity is of: its frame, its task, its point.
+//! The subject of a quantity: its frame, its task or its point.
 
 use crate::border::{check_finite, slice};
 use crate::environment::CEnvironment;

@@ -79,7 +79,7 @@ impl GroundArguments {
         Ok(found)
     }
 
-    /// Are columns of forces asked for?
+    /// True if columns of forces are asked for.
     pub fn writes_forces(&self) -> bool {
         self.contact_forces
     }

@@ -3,9 +3,12 @@
 //!
 //! `cargo run --release -p mozzi-engine --example jit_report [ROBOT.urdf …]` prints the page.
 
+mod quantities;
+
 use mozzi::Model;
-use mozzi::quantities::{LIST, Of, Query};
+use mozzi::quantities::Query;
 use mozzi_engine::{Arguments, Form, Listing, Program, Refusal, Shape, Tally, pivot_names, record_quantity};
+use quantities::quantities;
 
 /// What a core does in a cycle at most.
 struct Core {
@@ -131,12 +134,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("\n## {name}, {} joints\n", model.n());
         let mut rows = [const { Vec::new() }; 3];
         let mut worst: [Worst; 3] = std::array::from_fn(|_| Worst::default());
-        for query in (0..LIST.len()).map(Query::at) {
-            let query = match query.declaration().of {
-                Of::Robot => query,
-                Of::Frame => query.of(frame),
-                Of::Point | Of::Task => continue,
-            };
+        for query in quantities(frame) {
             let program = record_quantity(&model, query, Arguments::default())?;
             for (k, (x86, arm)) in pairs.into_iter().enumerate() {
                 let (Ok(x86), Ok(code)) = (listing(&program, query, x86), listing(&program, query, arm)) else {

@@ -3,9 +3,11 @@
 //!
 //! `cargo run --release -p mozzi-engine --example machine_code_bits`
 
-use mozzi::quantities::{LIST, Of, Query};
+mod quantities;
+
 use mozzi::random::Random;
 use mozzi_engine::{Arguments, Form, Kernel, Number, Program, Shape, record_quantity};
+use quantities::quantities;
 use std::error::Error;
 
 /// A register of the widest shape.
@@ -45,12 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for name in ["two_link_planar", "ur5", "panda"] {
         let model = mozzi_urdf::open(name)?.build()?;
         let frame = model.frames().last().ok_or("a robot without frames")?.0;
-        for query in (0..LIST.len()).map(Query::at) {
-            let query = match query.declaration().of {
-                Of::Robot => query,
-                Of::Frame => query.of(frame),
-                Of::Point | Of::Task => continue,
-            };
+        for query in quantities(frame) {
             let program = record_quantity(&model, query, Arguments::default())?;
             println!("{name} {} f64: {}", query.name(), line::<f64>(&program, [Shape::FourF64, Shape::TwoF64])?);
             println!("{name} {} f32: {}", query.name(), line::<f32>(&program, [Shape::EightF32, Shape::FourF32])?);

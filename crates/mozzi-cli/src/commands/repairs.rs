@@ -11,10 +11,10 @@ use std::io::Write;
 
 /// The proposals for each file, as text or one JSON object per line; with `--apply` the files are rewritten.
 pub fn run(arguments: &CheckArguments, models: &[String], is_json: bool, settings: &Settings) -> Result<String> {
-    let mut said = String::new();
+    let (mut said, density) = (String::new(), arguments.density()?);
     for name in models {
         let text = input::robot_file(name)?;
-        let found = match arguments.density()? {
+        let found = match density {
             Some(density) => fix::estimates(name, &text, density, settings),
             None => fix::proposals(name, &text, settings),
         };

@@ -5,7 +5,7 @@ use crate::recogniser::{ENERGIES, FORCES};
 use mozzi::{Model, Vec3};
 use mozzi_sim::{Contacts, PlaneMotion, Sample};
 
-/// What the rows of a motion's file contain.
+/// The columns of a motion's file.
 pub struct Row<'m> {
     pub model: &'m Model,
     contacts: Vec<Pair>,

@@ -31,7 +31,7 @@ pub const ENERGIES: [&str; 5] = ["kinetic_energy", "potential_energy", "motor_wo
 /// Its columns of contacts, with --contact-forces: normal and tangential forces, N.
 pub const FORCES: [&str; 2] = ["f_n", "f_t"];
 
-/// Is it a column that `mozzi simulate` writes for other programs?
+/// True for a column that `mozzi simulate` writes for other programs.
 pub fn is_own(name: &str) -> bool {
     ENERGIES.contains(&name)
         || FORCES.iter().any(|force| name.strip_prefix(force).is_some_and(|rest| rest.starts_with('_')))

@@ -100,3 +100,23 @@ pub(crate) trait Assembler: Sized {
     /// have a frame for each run, with the last address; a single one has one, on the stack if it is small.
     fn finish(self, steps: &[usize]) -> (Vec<u8>, Vec<usize>);
 }
+
+/// The steps of all arrays, and whether the frame, the last array, is on the stack: that of a single segment, if it is
+/// small. Several segments have a frame for each run, at addresses of its own, and their frame's size is rounded.
+pub(crate) fn with_frame(sizes: &mut [usize], cuts: &[usize], steps: &[usize]) -> (Vec<usize>, bool) {
+    let mut steps = steps.to_vec();
+    let Some((frame, arrays)) = sizes.split_last_mut() else { return (steps, false) };
+    if cuts.is_empty() {
+        return (steps, *frame <= LARGEST_ON_STACK);
+    }
+    *frame = frame.next_multiple_of(64);
+    steps.resize(arrays.len(), 0);
+    steps.push(*frame);
+    (steps, false)
+}
+
+/// The parts of a body between its cuts.
+pub(crate) fn segments<'b, W>(body: &'b [W], cuts: &'b [usize]) -> impl Iterator<Item = &'b [W]> {
+    let starts = [0].into_iter().chain(cuts.iter().copied());
+    starts.zip(cuts.iter().copied().chain([body.len()])).map(|(from, to)| &body[from..to])
+}

@@ -42,7 +42,7 @@ pub fn text(
         }
         _ => {
             let is_strict = settings.policy == mozzi_urdf::Policy::Strict;
-            // what URDF cannot express is told; strictly it is refused, unless the user names it
+            // a note names each thing that URDF cannot express; --strict refuses it, unless the user leaves it out
             let all = [LeftOut::Gravity, LeftOut::Rotors, LeftOut::Constraints];
             let told = all.into_iter().filter(|what| !is_strict && !left_out.contains(what));
             let left_out: Vec<LeftOut> = left_out.iter().copied().chain(told).collect();

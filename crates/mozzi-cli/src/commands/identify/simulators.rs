@@ -35,7 +35,7 @@ impl Motor<'_> {
     }
 }
 
-/// What to paste, and where each parameter went.
+/// The text to paste, and the place of each parameter.
 pub fn page(to: Simulator, found: &Identification<'_>, robot: &Description, servos: &[Servo]) -> String {
     let names: Vec<&str> = found.setup.columns.model.joint_names().collect();
     let motors: Vec<Motor> = robot

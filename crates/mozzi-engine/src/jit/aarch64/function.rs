@@ -3,7 +3,7 @@
 
 use super::encode::add_immediate;
 use super::{Address, Arm, FIRST_BASE};
-use crate::jit::target::{Assembler, LARGEST_ON_STACK};
+use crate::jit::target::{Assembler, segments, with_frame};
 
 const LIST: Address = 0;
 const COUNTER: Address = 1;
@@ -20,20 +20,12 @@ impl Arm {
     /// The function of each segment: x0 → an array of addresses, x1 runs (AAPCS64). It keeps no return address: the
     /// link register stays as it is.
     pub fn functions(mut self, steps: &[usize]) -> (Vec<u8>, Vec<usize>) {
-        let mut steps = steps.to_vec();
-        let is_on_stack = self.cuts.is_empty() && self.frame_bytes() <= LARGEST_ON_STACK;
-        if !self.cuts.is_empty() {
-            self.sizes[self.frame] = self.frame_bytes().next_multiple_of(64);
-            steps.resize(self.frame, 0);
-            steps.push(self.frame_bytes());
-        }
-        let ends = [&self.cuts[..], &[self.body.len()]].concat();
-        let (mut code, mut starts, mut from) = (Vec::new(), Vec::new(), 0);
-        for to in ends {
+        let (steps, is_on_stack) = with_frame(&mut self.sizes, &self.cuts, steps);
+        let (mut code, mut starts) = (Vec::new(), Vec::new());
+        for body in segments(&self.body, &self.cuts) {
             code.resize(code.len().next_multiple_of(16), INVALID);
             starts.push(4 * code.len());
-            self.function(&mut code, &self.body[from..to], &steps, is_on_stack);
-            from = to;
+            self.function(&mut code, body, &steps, is_on_stack);
         }
         (code.into_iter().flat_map(u32::to_le_bytes).collect(), starts)
     }

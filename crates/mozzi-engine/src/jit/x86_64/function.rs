@@ -2,7 +2,7 @@
 //! runs the code in a loop, whose number of passes is an argument.
 
 use super::{BASES, X86};
-use crate::jit::target::{Assembler, LARGEST_ON_STACK};
+use crate::jit::target::{Assembler, segments, with_frame};
 
 /// The index of the first register of [`BASES`] that must be saved for the caller.
 const SAVED: usize = 9;
@@ -14,20 +14,12 @@ impl X86 {
     /// (System V). With steps in bytes, it runs rsi ≥ 1 times, each array's address a step further every time. Several
     /// segments have a frame for each run, with the last address; a single one has one, on the stack if it is small.
     pub fn functions(mut self, steps: &[usize]) -> (Vec<u8>, Vec<usize>) {
-        let mut steps = steps.to_vec();
-        let is_on_stack = self.cuts.is_empty() && self.frame_bytes() <= LARGEST_ON_STACK;
-        if !self.cuts.is_empty() {
-            self.sizes[self.frame] = self.frame_bytes().next_multiple_of(64);
-            steps.resize(self.frame, 0);
-            steps.push(self.frame_bytes());
-        }
-        let ends = [&self.cuts[..], &[self.body.len()]].concat();
-        let (mut code, mut starts, mut from) = (Vec::new(), Vec::new(), 0);
-        for to in ends {
+        let (steps, is_on_stack) = with_frame(&mut self.sizes, &self.cuts, steps);
+        let (mut code, mut starts) = (Vec::new(), Vec::new());
+        for body in segments(&self.body, &self.cuts) {
             code.resize(code.len().next_multiple_of(64), 0xcc);
             starts.push(code.len());
-            self.function(&mut code, &self.body[from..to], &steps, is_on_stack);
-            from = to;
+            self.function(&mut code, body, &steps, is_on_stack);
         }
         (code, starts)
     }

@@ -26,7 +26,7 @@ pub fn parameters(page: &mut Page, found: &Identification<'_>, judged: &Judgemen
     page.title("all parameters; apparent: what predictions contain beyond the robot").lines(&table(&rows, "llrrrlr"));
 }
 
-/// What each column is taken for.
+/// The meaning of each column.
 pub fn column_table(page: &mut Page, file: &str, rows: &[Row]) {
     let head = ["column", "meaning", "unit", "joint"].map(str::to_string).to_vec();
     let row = |row: &Row| vec![row.column.clone(), row.meaning.clone(), row.unit.clone(), row.joint.clone()];
@@ -34,7 +34,7 @@ pub fn column_table(page: &mut Page, file: &str, rows: &[Row]) {
     page.title(&format!("columns of {file}")).lines(&table(&all, "llll"));
 }
 
-/// What the motion does not determine.
+/// The parameters that the motion does not determine.
 pub fn weak(page: &mut Page, judged: &Judgement) {
     let weak: Vec<_> = judged.parameters.iter().filter(|parameter| parameter.is_weak()).collect();
     if weak.is_empty() {

@@ -10,7 +10,7 @@ use mozzi_identify::judgement::Judgement;
 use mozzi_identify::{Errors, Identification, Kind, Level, Refinement, Verdict};
 use serde_json::{Value, json};
 
-/// What a page shows beside the identification.
+/// The parts of a page beside the identification.
 pub struct Shown<'s> {
     pub verdict: &'s Verdict,
     pub judged: &'s Judgement,
