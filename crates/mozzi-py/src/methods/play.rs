@@ -35,7 +35,7 @@ impl PyModel {
     /// --------
     /// >>> import mozzi
     /// >>> mozzi.models.ur5().play()
-    /// <mozzi page of 2.4 MB: a notebook shows it, save(path) writes it>
+    /// <mozzi page of 2... MB: a notebook shows it, save(path) writes it>
     #[pyo3(signature = (*, shapes=None, meshes="visual", mesh_root=None))]
     fn play<'py>(
         &self,

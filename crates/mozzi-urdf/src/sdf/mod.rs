@@ -1,7 +1,7 @@
 //! SDFormat 1.4 to 1.12, the files of Gazebo and Drake.
 //!
 //! [`load`](crate::load), [`parse`](crate::parse) and [`open`](crate::open) read them, too. The root element `<sdf>`
-//! decides, not the file's name. [`write`] makes such a text.
+//! decides, not the file's name. [`write()`] makes such a text.
 //!
 //! # What is read
 //! Models, also inside models and from files that are included; links and their inertias; frames; poses with
@@ -11,7 +11,7 @@
 //! the planar `<drake:joint>`, rotor inertia and gear ratio, `<drake:mimic>`, `<drake:ball_constraint>`.
 //!
 //! - A model is free in SDFormat, unless joints fix it to the world: then the base is the link `world`. A fixed joint
-//!   named `fixed_base` at the origin of the world, as [`write`] makes it, makes the model's link itself the base. One
+//!   named `fixed_base` at the origin of the world, as [`write()`] makes it, makes the model's link itself the base. One
 //!   free model without other joints to the world has a floating base ([`mozzi::Base`]).
 //! - Names inside of another model begin with that model's: `arm::link_1`. Static models of a world are left out.
 //! - Joints of two axes become two joints, `j.axis` and `j.axis2`; a planar joint becomes `j.x`, `j.y` and `j.theta`.
