@@ -11,8 +11,8 @@
 //! the planar `<drake:joint>`, rotor inertia and gear ratio, `<drake:mimic>`, `<drake:ball_constraint>`.
 //!
 //! - A model is free in SDFormat, unless joints fix it to the world: then the base is the link `world`. A fixed joint
-//!   named `fixed_base` at the origin of the world, as [`write()`] makes it, makes the model's link itself the base. One
-//!   free model without other joints to the world has a floating base ([`mozzi::Base`]).
+//!   named `fixed_base` at the origin of the world, as [`write()`] makes it, makes the model's link itself the base.
+//!   One free model without other joints to the world has a floating base ([`mozzi::Base`]).
 //! - Names inside of another model begin with that model's: `arm::link_1`. Static models of a world are left out.
 //! - Joints of two axes become two joints, `j.axis` and `j.axis2`; a planar joint becomes `j.x`, `j.y` and `j.theta`.
 //! - `screw_thread_pitch` is the travel per turn; the older `thread_pitch` is −2π over it.
