@@ -1,5 +1,5 @@
-//! `cargo xtask test | check | docs | book | page | bench | accuracy | gpu-report | gpu-bench | jit-report | aarch64 |
-//! nightly | wheel | weigh | api | release | dist | deb | licences`: the same commands as in CI.
+//! `cargo xtask test | check | docs | claims | book | page | bench | accuracy | gpu-report | gpu-bench | jit-report |
+//! aarch64 | nightly | wheel | weigh | api | release | dist | deb | licences`: the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -9,6 +9,7 @@ mod advisories;
 mod bench;
 mod book;
 mod circles;
+mod claims;
 mod command;
 mod cpu;
 mod cross;
@@ -33,6 +34,7 @@ mod oracles;
 mod other_targets;
 mod package;
 mod page;
+mod readme;
 mod release;
 mod report;
 mod source_text;
@@ -60,7 +62,9 @@ usage: cargo xtask COMMAND
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
   check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
           --quick                                     only what compiles nothing, in seconds: before each commit
-  docs    rewrite the generated pages of docs/; `test` checks that they are current
+  docs    rewrite the generated pages of docs/ and README's tables; `test` and `check` compare them
+          --readme                                    README's tables alone, from the pages that other commands write
+  claims  list every measured number of README and the documentation with the command or test that it comes from
   book    build the documentation book from book/, docs/ and the sources, with rustdoc, into target/book/html
           --code                                      run its code blocks instead; `test` does that and builds the book
   page    bundle page/ by npm, and mozzi-web if there is a compiler for WebAssembly, into crates/mozzi-report/bundle/;
@@ -124,6 +128,8 @@ fn main() -> ExitCode {
         ["check"] => check(&workspace, Check::Everything),
         ["check", "--quick"] => check(&workspace, Check::WithoutBuilds),
         ["docs"] => docs(&workspace),
+        ["docs", "--readme"] => one("README's tables", || readme::write(&workspace)),
+        ["claims"] => one("claims", || claims::list(&workspace)),
         ["book"] => book(&workspace),
         ["book", "--code"] => one("code of the book", || book::code(&workspace)),
         ["page"] => one("page", || page::write(&workspace)),
@@ -213,6 +219,7 @@ fn docs(workspace: &Workspace) -> ExitCode {
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));
     report.step("pages", || docs::write(workspace));
+    report.step("README's tables", || readme::write(workspace));
     report.finish()
 }
 
@@ -243,6 +250,8 @@ fn check(workspace: &Workspace, which: Check) -> ExitCode {
     report.step("house rules", || house_rules::check(workspace));
     report.step("lengths of documents", || documents::check(workspace));
     report.step("places of the map", || documents::check_places(workspace));
+    report.step("README's tables", || readme::check(workspace));
+    report.step("claims", || claims::check(workspace));
     if which == Check::Everything {
         builds(workspace, &mut report);
     }

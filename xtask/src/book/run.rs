@@ -20,7 +20,8 @@ use std::process::{Command, Stdio};
 /// The documentation tests of the pages with Rust.
 const RUST: &str = "examples/src/book.rs";
 /// Pages elsewhere, with the language of which the blocks run; other tests run their other blocks, or none.
-const GUIDES: [(&str, &str); 3] = [("README.md", "python"), ("docs/jax.md", "python"), ("docs/cpp.md", "cpp")];
+const GUIDES: [(&str, &str); 4] =
+    [("README.md", "python"), ("README.md", "console"), ("docs/jax.md", "python"), ("docs/cpp.md", "cpp")];
 /// Printed between the outputs of two blocks of Python.
 const MARK: &str = "\u{1}";
 const COMPILERS: [&str; 2] = ["g++", "clang++"];
