@@ -1,5 +1,6 @@
-//! `cargo xtask test | check | docs | claims | book | page | bench | accuracy | gpu-report | gpu-bench | jit-report |
-//! aarch64 | nightly | wheel | weigh | api | release | dist | deb | licences`: the same commands as in CI.
+//! `cargo xtask test | check | docs | claims | coverage | mutants | book | page | bench | accuracy | gpu-report |
+//! gpu-bench | jit-report | aarch64 | nightly | wheel | weigh | api | release | dist | deb | licences`: the same
+//! commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
@@ -11,6 +12,7 @@ mod book;
 mod circles;
 mod claims;
 mod command;
+mod coverage;
 mod cpu;
 mod cross;
 mod deb;
@@ -28,6 +30,8 @@ mod licences;
 mod main_job;
 mod metadata;
 mod module_order;
+mod mutants;
+mod names;
 mod nightly;
 mod no_std;
 mod oracles;
@@ -65,6 +69,9 @@ usage: cargo xtask COMMAND
   docs    rewrite the generated pages of docs/ and README's tables; `test` and `check` compare them
           --readme                                    README's tables alone, from the pages that other commands write
   claims  list every measured number of README and the documentation with the command or test that it comes from
+  coverage  lines and regions that the libraries' tests run, into docs/coverage.md; needs llvm-cov of rustc's LLVM
+  mutants a sample of the faults that cargo-mutants puts into the kernels, each shown to the tests; adds to docs/mutants.md
+          --sample 60 --seed 0                        how many, which ones
   book    build the documentation book from book/, docs/ and the sources, with rustdoc, into target/book/html
           --code                                      run its code blocks instead; `test` does that and builds the book
   page    bundle page/ by npm, and mozzi-web if there is a compiler for WebAssembly, into crates/mozzi-report/bundle/;
@@ -129,6 +136,15 @@ fn main() -> ExitCode {
         ["check", "--quick"] => check(&workspace, Check::WithoutBuilds),
         ["docs"] => docs(&workspace),
         ["docs", "--readme"] => one("README's tables", || readme::write(&workspace)),
+        ["mutants", ref options @ ..] => {
+            let number = |name: &str, default: usize| {
+                let at = options.iter().position(|option| *option == name);
+                at.and_then(|at| options.get(at + 1)?.parse().ok()).unwrap_or(default)
+            };
+            let (sample, seed) = (number("--sample", mutants::SAMPLE), number("--seed", 0));
+            one("mutants", || mutants::run(&workspace, sample, seed))
+        }
+        ["coverage"] => one("coverage", || coverage::run(&workspace)),
         ["claims"] => one("claims", || claims::list(&workspace)),
         ["book"] => book(&workspace),
         ["book", "--code"] => one("code of the book", || book::code(&workspace)),
@@ -252,6 +268,7 @@ fn check(workspace: &Workspace, which: Check) -> ExitCode {
     report.step("places of the map", || documents::check_places(workspace));
     report.step("README's tables", || readme::check(workspace));
     report.step("claims", || claims::check(workspace));
+    report.step("names in documents", || names::check(workspace));
     if which == Check::Everything {
         builds(workspace, &mut report);
     }

@@ -6,6 +6,8 @@ mod columns;
 mod commands;
 mod conditions;
 mod controller;
+#[cfg(test)]
+mod documents;
 mod edits;
 mod effect;
 mod exit;
