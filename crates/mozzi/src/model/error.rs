@@ -44,7 +44,7 @@ pub enum Error {
         what: &'static str,
         /// Its length.
         found: usize,
-        /// What the model needs.
+        /// The length that the model requires.
         expected: usize,
     },
     /// No frame has this name.

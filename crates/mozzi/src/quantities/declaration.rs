@@ -197,7 +197,7 @@ pub struct Output {
     pub dims: &'static [Dim],
     /// Its unit, if it has one, for revolute joints, then for prismatic ones.
     pub unit: &'static str,
-    /// Is it a symmetric matrix? By rows and by columns it is then the same.
+    /// True for symmetric matrices, whose row- and column-major storage agree.
     pub is_symmetric: bool,
 }
 
