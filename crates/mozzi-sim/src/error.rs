@@ -8,7 +8,7 @@ use core::fmt;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Error {
-    /// Of the robot, or of an argument.
+    /// An error of the robot or of an argument.
     Model(mozzi::Error),
     /// The start violates a constraint.
     OpenStart {
@@ -78,7 +78,7 @@ pub enum Error {
     Condition {
         /// The condition.
         text: String,
-        /// What is wrong with it, and what was expected.
+        /// The problem, and the expected form.
         problem: String,
     },
 }

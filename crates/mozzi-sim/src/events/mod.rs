@@ -33,13 +33,13 @@ pub struct Event<'a> {
     pub name: String,
     /// Which zeros count.
     pub direction: Direction,
-    /// Does the simulation end there?
+    /// True if the simulation ends at the event.
     pub stop: bool,
     /// The function.
     pub function: EventFunction<'a>,
 }
 
-/// Of (t, θ, θ̇).
+/// A function of t (s), θ and θ̇.
 pub type EventFunction<'a> = Box<dyn Fn(f64, &[f64], &[f64]) -> f64 + 'a>;
 
 impl<'a> Event<'a> {
@@ -80,7 +80,7 @@ pub struct Occurrence {
     pub theta: Vec<f64>,
     /// θ̇ there; if the joint comes to rest at its limit there, θ̇ before the impact.
     pub dtheta: Vec<f64>,
-    /// Did the simulation end there?
+    /// True if the simulation ended there.
     pub stop: bool,
 }
 

@@ -105,14 +105,14 @@ pub struct Rollout<'m> {
     steps: Kind<'m>,
 }
 
-/// What takes the steps.
+/// The steps of each kind of integrator.
 enum Kind<'m> {
     Explicit(Box<Steps<ExplicitSteps<OneRobot<'m>>>>),
     Midpoint(Box<Steps<MidpointSteps<'m>>>),
     Constrained(Box<Steps<ConstrainedSteps<'m>>>),
 }
 
-/// The same with either kind of steps.
+/// Evaluates an expression with the steps of whichever kind the rollout has.
 macro_rules! with_steps {
     ($rollout:ident, |$steps:ident| $value:expr) => {
         match &mut $rollout.steps {

@@ -22,7 +22,7 @@ pub struct ParameterGradient {
 }
 
 impl ParameterGradient {
-    /// For robots like this one.
+    /// Scratch memory for this model.
     pub fn new(model: &Model) -> Self {
         ParameterGradient { workspace: fast::Workspace::new(model), products: Default::default() }
     }

@@ -35,7 +35,7 @@ pub trait Tables {
 /// N steps of one robot or of many of one model, τ held over each.
 #[derive(Debug)]
 pub struct Steps<S> {
-    /// What takes the steps.
+    /// The integrator.
     pub stepper: S,
     tau: Vec<f64>,
     checkpoints: Vec<[Vec<f64>; 2]>,
