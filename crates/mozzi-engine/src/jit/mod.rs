@@ -70,8 +70,8 @@ impl std::error::Error for Refusal {}
 pub enum Form {
     /// Blocks of a register's states: entry by entry, the lanes of each contiguous.
     Blocks,
-    /// Rows of the caller's tables, state by state; for shapes of several states. What outputs are
-    /// [condensed](Kernel::condensing) to, and the squares of angles, are in blocks, one after the other.
+    /// Rows of the caller's tables, state by state; for shapes of several states. [Condensed](Kernel::condensing)
+    /// outputs, and the squares of angles, are in blocks, one after the other.
     Rows,
 }
 
