@@ -1,4 +1,4 @@
-//! What a link's shape says about its inertia.
+//! Comparison of a link's inertia with its shape.
 
 use crate::geometry::hull::convex_hull;
 use crate::geometry::moments::{Filling, Moments, moments};
@@ -15,7 +15,8 @@ const MOST_BYTES: u64 = 64 << 20;
 const DENSEST: f64 = 25_000.0;
 /// Points on a circle.
 const AROUND: u32 = 24;
-/// Of a larger mesh, the points that are the farthest in as many directions are enough to compare with.
+/// Meshes with more points are reduced to the farthest points in this many directions, which is enough for a
+/// comparison.
 const DIRECTIONS: usize = 300;
 
 /// The points of the hull that matter.
