@@ -121,7 +121,7 @@ pub(crate) fn bisect(f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64)) ->
     bisect_until([0.0; 2], f, a, b)
 }
 
-/// The same, until |f| < `enough` or the zero is known to `width`. Chandrupatla's method (1997): the parabola t(f)
+/// As [`bisect`], until |f| < `enough` or the zero is known to `width`. Chandrupatla's method (1997): the parabola t(f)
 /// through the last three points where it is monotonic, else bisection, so that jumps are found as well.
 pub(crate) fn bisect_until(
     [enough, width]: [f64; 2],

@@ -10,8 +10,8 @@
 //!   That of fused numbers is compiled for the instruction.
 //! - the rest of a quantity's kernel is inlined into its entry (`fast.rs`).
 
-/// A pass over the robot: for each number a function of its own, compiled once; for fused numbers with fused
-/// multiply-add.
+/// Defines a pass over the robot: a function of its own per number type, compiled once and shared by all quantities;
+/// for [`Fused`](super::Fused) numbers it is compiled for fused multiply-add.
 macro_rules! pass {
     (
         $(#[$attribute:meta])*
