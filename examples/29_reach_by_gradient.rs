@@ -168,7 +168,8 @@ fn descent(memory: &VecDeque<(Vec<f64>, Vec<f64>)>, gradient: &[f64]) -> Vec<f64
     way
 }
 
-/// The least times of a rollout of 1000 Runge-Kutta steps, and of its gradient by the start and all torques.
+/// The least times of a rollout of 1000 Runge-Kutta steps, and of its gradient with respect to the start and all
+/// torques.
 fn cost(model: &Model) -> Result<(), Box<dyn std::error::Error>> {
     let (n, steps) = (model.n(), 1000);
     let hold = model.gravity_forces(&START)?;

@@ -14,7 +14,7 @@ pub enum Error {
     OpenStart {
         /// The constraint.
         constraint: String,
-        /// By how much, rad or m, or their rates.
+        /// Its violation, rad or m, or their rates.
         residual: f64,
         /// Position or velocity.
         what: &'static str,
@@ -23,7 +23,7 @@ pub enum Error {
     Opened {
         /// The constraint that is violated most.
         constraint: String,
-        /// By how much.
+        /// Its violation.
         residual: f64,
         /// When, s.
         time: f64,

@@ -20,7 +20,7 @@ struct Line {
     has_all: bool,
 }
 
-/// Rewrites a program as above; its results agree bit for bit, except for the sign of zeros.
+/// Moves the signs of a program out of its instructions. Results agree bit for bit, except for the sign of zeros.
 pub(crate) fn moved_out(lowered: Lowered, shape: Shape) -> Lowered {
     let Lowered { nodes, mut outputs, stores, before } = lowered;
     let sign_bit = if shape.is_f64() { 1 << 63 } else { 1 << 31 };

@@ -19,7 +19,7 @@ use mozzi::model::{Bounds, Freedom, Model};
 /// Which zeros of an event's function count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// All.
+    /// All zeros.
     Any,
     /// From below 0 to above.
     Rising,

@@ -45,9 +45,9 @@ impl Solid {
         Some(Solid { moments, low: bound(f64::min, f64::INFINITY), high: bound(f64::max, f64::NEG_INFINITY) })
     }
 
-    /// By how many powers of ten an inertia is away from the hull's, uniformly filled with the same mass: the worst of
-    /// its moments about the centre of mass, in the link's axes, and of what lies outside. Infinite if a moment is not
-    /// above 0.
+    /// The misfit of an inertia and the hull, uniformly filled with the same mass, in powers of ten. It is the largest
+    /// of three: |log₁₀| of the ratios of moments about the centre of mass, in the link's axes; an excessive density;
+    /// the distance of the centre of mass from the hull's box. Infinite if a moment is not above 0.
     pub fn misfit(&self, G: SpatialInertia) -> f64 {
         let (found, filled) = (G.about_center_of_mass(), self.moments.I * (G.mass / self.moments.size));
         let ratios = [(found.xx, filled.xx), (found.yy, filled.yy), (found.zz, filled.zz)];

@@ -110,8 +110,8 @@ pub fn proposals(file_name: &str, text: &str, settings: &Settings) -> Result<Vec
     })
 }
 
-/// By how many powers of ten the inertia of each link with a mass is away from that of its shape, uniformly filled;
-/// links whose shapes cannot be read are left out. A possible inertia below 1 is left alone.
+/// The misfit of the inertia of each link with a mass to its shape, uniformly filled, in powers of ten; links whose
+/// shapes cannot be read are left out. A possible inertia below 1 is left alone.
 pub fn misfits(file_name: &str, text: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);

@@ -22,7 +22,7 @@ pub enum Error {
     Unreachable {
         /// The constraint that is violated most.
         constraint: String,
-        /// By how much, rad or m, or their rates.
+        /// Its violation, rad or m, or their rates.
         residual: f64,
         /// The configuration or state that was searched for.
         what: &'static str,
