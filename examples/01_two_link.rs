@@ -1,7 +1,7 @@
 //! The planar arm with two joints (Modern Robotics, section 8.1): hand formulas against the library.
 //!
 //! Two massless rods of lengths L1 and L2, a point mass at the tip of each, in a vertical plane; θ1 is measured from
-//! the horizontal, θ2 from the first rod. (The robot's file says how the book's x-y plane lies there.) Lagrange's
+//! the horizontal, θ2 from the first rod. (The robot's file states how the book's x-y plane lies there.) Lagrange's
 //! way, with c1 = cos θ1, c12 = cos(θ1 + θ2), s2 = sin θ2 …:
 //!
 //! > p1 = L1 (c1, s1),  p2 = p1 + L2 (c12, s12)

@@ -6,7 +6,7 @@
 //!
 //! > f_b = −m R_sbᵀg,  m_b = p × f_b,  τ = g(θ) + J_bᵀ(m_b, f_b)
 //!
-//! The same weight fixed to the hand at p is a payload: it increases the mass matrix and g(θ). At rest, both need the
+//! A weight that is fixed to the hand at p is a payload: it increases the mass matrix and g(θ). At rest, both need the
 //! same torques; in motion, the payload has inertia, which a constant wrench does not model.
 
 use mozzi::{Environment, SpatialInertia, Vec3, Wrench};

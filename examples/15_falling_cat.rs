@@ -5,7 +5,8 @@
 //! same posture, the base is rotated by an angle that depends on the loop but not on its duration. The reversed loop
 //! rotates it back.
 //!
-//! The same by forward dynamics: motors make the joints follow the loop, and no wrench acts on the base.
+//! The second computation is by forward dynamics: motors make the joints follow the loop, and no wrench acts on the
+//! base.
 
 use mozzi::model::integrate;
 use mozzi::nalgebra::{DMatrix, DVector};
@@ -88,8 +89,8 @@ fn by_momentum(arm: &Model, steps: usize, backwards: bool) -> Result<SE3, Box<dy
     Ok(SE3::from_pose(*theta.first_chunk().ok_or("a base")?))
 }
 
-/// The same by motors: the joints' accelerations are given; the base's rows of M θ̈ + h = 0 give the base's
-/// acceleration, the other rows give the torques.
+/// The pose of the base after the loop, driven by motors. The joints' accelerations are given. Mθ̈ + h = τ then gives
+/// the acceleration of the base (its rows, where τ = 0) and the torques (the other rows).
 fn by_forces(arm: &Model) -> Result<SE3, Box<dyn Error>> {
     let motors = torque(|t, theta, dtheta, tau| {
         let [q, dq, ddq] = on_the_loop(t);

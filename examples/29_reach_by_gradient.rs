@@ -123,8 +123,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     cost(&model)
 }
 
-/// The same robot with damping D/0.2 s. Without, the wrist is an inverted pendulum whose deviation grows a thousandfold
-/// in a second: a loss of torques alone is then no smooth function.
+/// A copy of the robot with damping M_jj/0.2 s at each joint j. Without damping the wrist is an inverted pendulum whose
+/// deviation grows a thousandfold in a second; a loss of torques alone is then not a smooth function.
 fn damped(model: Model) -> Result<Model, Error> {
     let M = model.mass_matrix(&START)?;
     let mut parameters = model.parameters();
@@ -168,7 +168,8 @@ fn descent(memory: &VecDeque<(Vec<f64>, Vec<f64>)>, gradient: &[f64]) -> Vec<f64
     way
 }
 
-/// The least times of a rollout of 1000 Runge-Kutta steps, and of its gradient by the start and all torques.
+/// The least times of a rollout of 1000 Runge-Kutta steps, and of its gradient with respect to the start and all
+/// torques.
 fn cost(model: &Model) -> Result<(), Box<dyn std::error::Error>> {
     let (n, steps) = (model.n(), 1000);
     let hold = model.gravity_forces(&START)?;

@@ -1,6 +1,6 @@
 //! A box on an incline with Coulomb friction: it sticks at 20°, slides at 35°, and thrown across the slope it comes to
-//! rest where the differential equation of a sliding point says. Four corners share the force: their single forces are
-//! not unique, their sum is.
+//! rest where the differential equation of a sliding point predicts. Four corners share the force: their single forces
+//! are not unique, their sum is.
 
 use mozzi::{Description, SE3, SO3, Solid, Vec3};
 use mozzi_sim::{ContactPoint, Contacts, Options, Plane, Run, Simulation, Zero};

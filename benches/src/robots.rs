@@ -122,9 +122,9 @@ fn body(random: &mut Random) -> SpatialInertia {
     SpatialInertia::new(2.0 + random.next(), Vec3(random.array()) * 0.1, moments)
 }
 
-/// The same robot in the form given to every library: fixed links are merged into the links that carry them, joint k
-/// connects a link of the base's or of another joint's number and link `k`, no friction, no armature, no limits, and
-/// standard gravity, which is built into dynibo.
+/// The robot in the form given to every library: fixed links are merged into the links that carry them, joint k
+/// connects link `k` to the base or to the link of another joint, no friction, no armature, no limits, and standard
+/// gravity, which is built into dynibo.
 ///
 /// # Panics
 /// If a joint is not at its link's origin, which most libraries cannot express.

@@ -19,7 +19,7 @@ pub struct Arm {
     pub name: &'static str,
     /// Without a load.
     pub model: Model,
-    /// Of its hand.
+    /// The frame of its hand.
     pub tool: FrameId,
     from: Vec<f64>,
     to: Vec<f64>,

@@ -26,7 +26,7 @@ pub fn circles(source: &str, files: &BTreeMap<String, String>) -> Vec<Vec<String
     circles.into_iter().map(|circle| circle.into_iter().cloned().collect()).collect()
 }
 
-/// What a file uses, and what that uses.
+/// The files that a file uses, directly or through others.
 fn reached<'n>(from: &'n String, uses: &BTreeMap<&'n String, BTreeSet<&'n String>>) -> BTreeSet<&'n String> {
     let (mut reached, mut open) = (BTreeSet::new(), vec![from]);
     while let Some(name) = open.pop() {

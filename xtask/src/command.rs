@@ -33,7 +33,7 @@ pub fn outcome(command: impl BorrowMut<Command>) -> Outcome {
     }
 }
 
-/// Whether a program of this name answers `--version`.
+/// True if the program starts and succeeds with `--version`.
 pub fn exists(command: &mut Command) -> bool {
     let quiet = command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     quiet.status().is_ok_and(|status| status.success())

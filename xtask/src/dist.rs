@@ -17,7 +17,7 @@ const FOLDER: &str = "target/dist";
 /// cargo's results, of the Debian package, too.
 pub const CARGO: &str = "target/dist/cargo";
 const ARCHITECTURES: [&str; 2] = ["x86_64", "aarch64"];
-/// Of the shared library, without symbols: half of it are kernels (docs/performance-log.md).
+/// The largest size of the shared library without symbols: half of it are kernels (docs/performance-log.md).
 const MOST_BYTES: u64 = 12_000_000;
 
 pub fn run(workspace: &Workspace, report: &mut Report) {

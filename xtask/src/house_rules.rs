@@ -5,9 +5,8 @@ use crate::circles::circles;
 use crate::module_order::above;
 use crate::report::Outcome;
 use crate::source_text::{code_only, without_tests};
-use crate::workspace::Workspace;
+use crate::workspace::{self, Workspace};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 /// Files that may contain `unsafe`: instruction sets and their dispatch, machine code, CUDA's libraries, NumPy's
 /// arrays, Python's methods, XLA's calls, C's pointers, and exports to JavaScript. Each entry is a path prefix.
@@ -33,9 +32,9 @@ const LONG: usize = 400;
 
 pub fn check(workspace: &Workspace) -> Outcome {
     let mut files = Vec::new();
-    rust_files(&workspace.path("crates"), &mut files);
-    rust_files(&workspace.path("xtask/src"), &mut files);
-    rust_files(&workspace.path("xtask/book/src"), &mut files);
+    for folder in ["crates", "xtask/src", "xtask/book/src"] {
+        workspace::files(&workspace.path(folder), &["rs"], &mut files);
+    }
     files.sort();
     let (mut broken, mut long) = (0, 0);
     let mut crates: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
@@ -120,19 +119,6 @@ fn has_word(line: &str, word: &str) -> bool {
         let after = line[at + word.len()..].chars().next();
         !in_name(line[..at].chars().next_back()) && (word.ends_with('!') || !in_name(after))
     })
-}
-
-fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
-    for path in entries.map(|entry| entry.path()) {
-        if path.is_dir() {
-            if path.file_name().is_some_and(|name| name != "target") {
-                rust_files(&path, files);
-            }
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
-            files.push(path);
-        }
-    }
 }
 
 #[cfg(test)]

@@ -33,8 +33,8 @@ const READ: [(&str, &str); 5] = [
 
 /// The tool that builds the documentation book.
 const BOOK: &str = "xtask/book/Cargo.toml";
-/// What this tool may have besides, since nothing that is shipped links it: mdBook is under MPL-2.0, the icons of the
-/// book under CC-BY-4.0.
+/// Further licences that are allowed in this tool, since nothing that is shipped links it: mdBook is under MPL-2.0, the
+/// icons of the book under CC-BY-4.0.
 const ALLOWED_IN_BOOK: [&str; 2] = ["MPL-2.0", "CC-BY-4.0"];
 
 pub fn check(workspace: &Workspace) -> Outcome {

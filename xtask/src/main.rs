@@ -38,6 +38,7 @@ mod oracles;
 mod other_targets;
 mod package;
 mod page;
+mod prose;
 mod readme;
 mod release;
 mod report;
@@ -64,7 +65,7 @@ usage: cargo xtask COMMAND
           the Python package, its wheel, some fuzzing, the no_std check, every example, the main job,
           the release build's operations on registers (none may be a call)
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
-  check   formatting, clippy, documentation, licences, advisories, house rules, length of README and DESIGN
+  check   formatting, clippy, documentation, licences, advisories, house rules, prose, length of README and DESIGN
           --quick                                     only what compiles nothing, in seconds: before each commit
   docs    rewrite the generated pages of docs/ and README's tables; `test` and `check` compare them
           --readme                                    README's tables alone, from the pages that other commands write
@@ -264,6 +265,7 @@ fn check(workspace: &Workspace, which: Check) -> ExitCode {
     report.step("licence texts", || third_party::check(workspace));
     report.step("advisories", || advisories::check(workspace));
     report.step("house rules", || house_rules::check(workspace));
+    report.step("prose", || prose::check(workspace));
     report.step("lengths of documents", || documents::check(workspace));
     report.step("places of the map", || documents::check_places(workspace));
     report.step("README's tables", || readme::check(workspace));

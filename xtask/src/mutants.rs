@@ -1,4 +1,4 @@
-//! Faults that cargo-mutants puts into the kernels one at a time, a sample by a seed: which of them does no test notice?
+//! A sample, by a seed, of the faults that cargo-mutants puts into the kernels one at a time, and which the tests notice.
 //!
 //! `.cargo/mutants.toml` lists the files. A fault in a crate is shown to the unit tests of that crate, and to the
 //! conformance test of mozzi-engine, which computes every quantity twice. The results are in

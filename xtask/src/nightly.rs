@@ -12,7 +12,7 @@ use crate::workspace::Workspace;
 use std::process::{Command, ExitCode};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// For each fuzz target, unless `--seconds` says otherwise.
+/// The default time for each fuzz target, s; `--seconds` overrides it.
 pub const SECONDS: u32 = 3600;
 const FOLDER: &str = "target/nightly";
 /// Initial inputs of a target in addition to its corpus.

@@ -11,7 +11,7 @@ const RUNNER: &str = "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER";
 const LINKER: &str = "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER";
 
 const TARGET: &str = "aarch64-unknown-linux-gnu";
-/// What they are on Debian, after `apt install qemu-user gcc-aarch64-linux-gnu`.
+/// Debian's programs and libraries, after `apt install qemu-user gcc-aarch64-linux-gnu`.
 const QEMU: &str = "qemu-aarch64";
 const GCC: &str = "aarch64-linux-gnu-gcc";
 const LIBRARIES: &str = "/usr/aarch64-linux-gnu";
@@ -44,7 +44,7 @@ fn cargo_for_aarch64(workspace: &Workspace, arguments: &[&str]) -> Result<Comman
 }
 
 /// Tests of the libraries whose arithmetic depends on the processor, and of its machine code. Times under an emulator
-/// say nothing.
+/// are meaningless.
 pub fn aarch64(workspace: &Workspace) -> Outcome {
     let packages = ["mozzi", "mozzi-sim", "mozzi-engine", "mozzi-urdf", "mozzi-motion"];
     match cargo_for_aarch64(workspace, &["test", "--tests"]) {
@@ -98,7 +98,8 @@ pub fn aarch64_sample(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// What users of these systems compile. Nothing is linked or run, for want of their linkers and their machines.
+/// Targets for which the packages are compiled. Nothing is linked or run, because their linkers and machines are not
+/// available.
 const ELSEWHERE: [&str; 2] = ["x86_64-pc-windows-msvc", "aarch64-apple-darwin"];
 const CHECKED: [&str; 4] = ["mozzi-cli", "mozzi-c", "mozzi-py", "mozzi-identify"];
 

@@ -2,6 +2,15 @@
 
 /// Blank comments, strings and character literals; newlines stay.
 pub fn code_only(source: &str) -> String {
+    blank(source, true)
+}
+
+/// Blank strings and character literals; comments, other code and newlines stay.
+pub fn without_literals(source: &str) -> String {
+    blank(source, false)
+}
+
+fn blank(source: &str, comments: bool) -> String {
     let mut code = String::with_capacity(source.len());
     let mut rest = source;
     let mut in_word = false; // the r of `for"…"` starts no raw string
@@ -18,6 +27,7 @@ pub fn code_only(source: &str) -> String {
         let (taken, after) = rest.split_at(length);
         match token {
             0 => code.push(c),
+            _ if taken.starts_with('/') && !comments => code.push_str(taken),
             _ => code.extend(taken.chars().map(|c| if c == '\n' { '\n' } else { ' ' })),
         }
         in_word = token == 0 && (c.is_alphanumeric() || c == '_') && c != 'b' && c != 'c';

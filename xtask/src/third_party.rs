@@ -13,7 +13,7 @@ use std::path::Path;
 /// The file, which wheels, archives and the Debian package contain.
 pub const FILE: &str = "THIRD-PARTY.txt";
 
-/// What is published as a binary, with its name in the file.
+/// Packages that are published as binaries, with their names in the file.
 const ARTEFACTS: [(&str, &str); 3] = [("mozzi-py", "wheel"), ("mozzi-c", "library"), ("mozzi-cli", "command line")];
 
 /// How names of licence files begin.

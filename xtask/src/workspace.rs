@@ -42,14 +42,14 @@ impl Workspace {
         self.fresh_folder(&format!("target/xtask/{name}"))
     }
 
-    /// The same cargo that started this program, in the workspace's root.
+    /// A call of the cargo that started this program, in the workspace's root.
     pub fn cargo(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo")));
         command.args(arguments).current_dir(&self.root);
         command
     }
 
-    /// The answer of git, if this is a clone and git is installed.
+    /// The output of git, if this is a clone and git is installed.
     pub fn git(&self, arguments: &[&str]) -> Option<String> {
         let output = Command::new("git").args(arguments).current_dir(&self.root).output().ok()?;
         let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
@@ -73,5 +73,19 @@ impl Workspace {
         let mut command = self.cargo(&["run", "--manifest-path"]);
         command.arg(self.path("Cargo.toml")).args(arguments).current_dir(folder);
         command
+    }
+}
+
+/// Adds the files of a folder and its subfolders that have one of these endings; `target` is left out.
+pub fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
+    for path in entries.map(|entry| entry.path()) {
+        if path.is_dir() {
+            if path.file_name().is_some_and(|name| name != "target") {
+                files(&path, endings, found);
+            }
+        } else if path.extension().is_some_and(|ending| endings.iter().any(|known| ending == *known)) {
+            found.push(path);
+        }
     }
 }

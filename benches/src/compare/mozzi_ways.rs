@@ -41,7 +41,7 @@ struct OneState<'a, F> {
     model: &'a Model,
     /// With the flops of their programs, if they have any.
     quantities: Vec<(Query<'static>, Option<usize>)>,
-    /// Of each at each state.
+    /// The inputs of each quantity at each state.
     inputs: Vec<Vec<Vec<&'a [f64]>>>,
     evaluate: F,
     outputs: Outputs,

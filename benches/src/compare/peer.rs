@@ -92,7 +92,7 @@ impl Peer {
         Ok(Peer { name: name.into(), library })
     }
 
-    /// What it was compiled from, and how.
+    /// The version of the library, and its compiler flags.
     pub fn version(&self) -> Result<String, String> {
         Ok(format!("{}, `{}`", self.text("peer_version")?, self.text("peer_flags")?))
     }

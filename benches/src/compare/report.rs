@@ -74,7 +74,7 @@ fn how() -> String {
     )
 }
 
-/// What is written for one robot, and no library that takes any.
+/// The peer whose code is generated for each robot, instead of a library for any robot.
 const GENERATED: &str = "CasADi";
 
 /// mozzi's columns with which the peers are compared.

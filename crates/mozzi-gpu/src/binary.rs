@@ -11,7 +11,7 @@ pub struct Binary {
     pub(crate) resources: Option<Resources>,
 }
 
-/// What a thread and a block of a kernel need, as counted by the assembler.
+/// The resources that a thread and a block of a kernel need, as counted by the assembler.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Resources {
     /// 32-bit registers of a thread.

@@ -3,7 +3,7 @@
 use crate::binary::{Binary, Resources};
 use std::path::PathBuf;
 
-/// What a kernel's code depends on.
+/// The inputs that determine a kernel's code.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Key {
     pub text: String,

@@ -39,7 +39,7 @@ pub enum Error {
     NotNvrtc {
         /// The library.
         path: String,
-        /// What is wrong.
+        /// The reason, such as a missing symbol.
         reason: String,
     },
     /// NVRTC did not compile a text.
@@ -57,13 +57,13 @@ pub enum Error {
     /// Not an architecture.
     #[error("the architecture is `{found}`, expected a compute capability such as sm_90")]
     BadArch {
-        /// What was given.
+        /// The given text.
         found: String,
     },
     /// A call of the driver failed.
     #[error("CUDA: {call}: {reason}")]
     Driver {
-        /// What was called.
+        /// The function of the driver.
         call: &'static str,
         /// The driver's error.
         reason: String,

@@ -33,10 +33,10 @@ pub struct Closing {
     pub residual: f64,
 }
 
-/// What a closing has done, to do the same to a state of another number type.
+/// The numbers of corrections in one closing, so that they can be repeated for a state of another number type.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Corrections {
-    /// Of positions, with each factorization.
+    /// Corrections of the positions with each factorization.
     positions: [usize; FACTORIZATIONS],
     factorizations: usize,
     velocities: usize,
@@ -165,7 +165,7 @@ impl<S: Float + Into<f64>> Closer<S> {
 }
 
 impl Corrections {
-    /// The same corrections of a state of any number type.
+    /// Applies the same numbers of corrections to a state of any number type, without tests of convergence.
     pub(crate) fn repeat<S: Real + From<C>, C: Scalar>(
         self,
         model: &Model<C>,

@@ -20,7 +20,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use mozzi::model::Model;
 
-/// What takes the steps.
+/// The integrator, with its memory.
 pub(crate) enum Integrator {
     Explicit(Explicit),
     DormandPrince(Box<DormandPrince>),
@@ -68,12 +68,12 @@ pub(crate) struct Course<'r> {
     pub(crate) motion: Motion<f64, 3>,
     /// The state at the beginning of the step; kept only if something may happen within it.
     pub(crate) from: State,
-    /// Can events, stops or rows lie within a step?
+    /// True if events, stops or rows can lie within a step.
     is_watched: bool,
     /// The step number of the next row, if steps are watched.
     next: usize,
     recorder: &'r mut dyn Recorder,
-    /// Has the recorder ended the simulation?
+    /// True once the recorder has ended the simulation.
     is_closed: bool,
     pub ending: Ending,
 }
@@ -194,7 +194,7 @@ impl<'r> Course<'r> {
         Ok(())
     }
 
-    /// A step up to the next event or stop, and the rows before it. Does the simulation end there?
+    /// Takes a step up to the next event or stop, and records the rows before it. True if the simulation ends there.
     fn watched_step(&mut self, done: usize) -> Result<bool, Error> {
         let Options { duration, method, .. } = self.options;
         let (model, step) = (self.driven.model, self.options.step());
@@ -304,7 +304,7 @@ impl<'r> Course<'r> {
         1e-12 * self.options.duration
     }
 
-    /// Does the step end where the next row is?
+    /// True if the step ends at the time of the next row, within the tolerance.
     fn is_near_next(&self) -> bool {
         let next = self.options.time(self.next.min(self.options.steps));
         (next - self.motion.t).abs() <= self.tolerance()
@@ -316,7 +316,7 @@ impl<'r> Course<'r> {
         self.driven.close(*t, theta, dtheta)
     }
 
-    /// The same for a state whose rates are known.
+    /// As [`close`](Self::close), for a state whose rates are known: computes them again and restarts the integrator.
     fn close_again(&mut self) -> Result<(), Error> {
         if !self.driven.has_constraints() {
             return Ok(());

@@ -36,7 +36,7 @@ impl<'m, I: Input> Driven<'m, I> {
         self.equation.evaluate(t, theta, dtheta, ddtheta)
     }
 
-    /// Does the robot have constraints?
+    /// True if the robot has constraints.
     pub fn has_constraints(&self) -> bool {
         self.closer.is_some()
     }

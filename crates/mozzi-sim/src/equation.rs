@@ -30,7 +30,7 @@ pub trait ForwardDynamics {
     /// The robot.
     fn model(&self) -> &Model;
 
-    /// Writes θ̈. Are the pivots of M well above rounding error? See [`Pivots`](mozzi::Pivots).
+    /// Writes θ̈. True if all pivots of M are well above rounding error: see [`Pivots`](mozzi::Pivots).
     ///
     /// # Panics
     /// On slices of a wrong length.
@@ -56,7 +56,7 @@ pub struct Equation<'m, I> {
     pub(crate) force: Vec<f64>,
     /// λ of the last evaluation.
     lambda: Vec<f64>,
-    /// Is dry friction not part of θ̈, because impulses produce it?
+    /// True if dry friction is applied as impulses instead of in θ̈.
     pub(crate) has_impulses: bool,
     /// Further constant forces of a step, −Jᵀp/Δt, whose work is not part of the powers.
     wrenches: Vec<(FrameId, Wrench)>,
@@ -318,7 +318,7 @@ impl<'m, I: Input> Equation<'m, I> {
     }
 }
 
-/// Are all values below the bound? False for NaN; without a branch for each.
+/// True if all absolute values are below the bound; false for NaN. Branch-free.
 fn are_below(values: &[f64], bound: f64) -> bool {
     values.iter().fold(true, |fine, x| fine & (x.abs() < bound))
 }

@@ -8,13 +8,13 @@ use core::fmt;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Error {
-    /// Of the robot, or of an argument.
+    /// An error of the robot or of an argument.
     Model(mozzi::Error),
     /// The start violates a constraint.
     OpenStart {
         /// The constraint.
         constraint: String,
-        /// By how much, rad or m, or their rates.
+        /// Its violation, rad or m, or their rates.
         residual: f64,
         /// Position or velocity.
         what: &'static str,
@@ -23,7 +23,7 @@ pub enum Error {
     Opened {
         /// The constraint that is violated most.
         constraint: String,
-        /// By how much.
+        /// Its violation.
         residual: f64,
         /// When, s.
         time: f64,
@@ -78,7 +78,7 @@ pub enum Error {
     Condition {
         /// The condition.
         text: String,
-        /// What is wrong with it, and what was expected.
+        /// The problem, and the expected form.
         problem: String,
     },
 }

@@ -85,7 +85,7 @@ impl Options {
         if k == self.steps { self.duration } else { k as f64 * self.step() }
     }
 
-    /// Is step k recorded?
+    /// True if step k is recorded: every `record_every`-th step and the last.
     pub fn is_recorded(&self, k: usize) -> bool {
         k.is_multiple_of(self.record_every) || k == self.steps
     }

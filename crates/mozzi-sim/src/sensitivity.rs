@@ -47,7 +47,7 @@ pub struct EndSensitivity {
 }
 
 impl EndSensitivity {
-    /// By the chain rule along the steps, from the last to the first. `None` if there are no steps.
+    /// Applies the chain rule along the steps, from the last to the first. `None` if there are no steps.
     ///
     /// # Panics
     /// When the steps are of different robots.

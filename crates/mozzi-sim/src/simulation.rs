@@ -65,7 +65,7 @@ pub struct Run {
 pub struct Ending {
     /// Steps taken.
     pub steps: usize,
-    /// Did it reach t_f? `false` if an event, the progress callback or the recorder ended it.
+    /// True if it reached t_f; false if an event, the progress callback or the recorder ended it.
     pub complete: bool,
     /// In the order of time.
     pub events: Vec<Occurrence>,

@@ -100,8 +100,7 @@ pub(crate) fn velocity(model: &Model, j: Option<usize>) -> String {
     j.and_then(|j| model.velocity_names().nth(j)).unwrap_or_default().to_string()
 }
 
-/// The velocity whose damping asks for steps as short as h, of an explicit method: those are stable up to about
-/// h = 3 M/d.
+/// The velocity whose damping d requires steps as short as h. Explicit methods are stable up to about h = 3 M/d.
 fn damped(model: &Model, h: f64) -> Option<usize> {
     let M = model.mass_matrix(&model.start().theta).ok()?;
     let rate = |j: usize| {

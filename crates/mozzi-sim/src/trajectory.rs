@@ -62,7 +62,7 @@ pub struct Trajectory {
     pub contact_forces: Vec<f64>,
     /// Steps taken.
     pub steps: usize,
-    /// Did it reach t_f? `false` if the progress callback stopped it.
+    /// True if it reached t_f; false if the progress callback stopped it.
     pub complete: bool,
 }
 

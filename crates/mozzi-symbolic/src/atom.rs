@@ -1,4 +1,4 @@
-//! What polynomials are made of: parameters, the state, sines and cosines.
+//! The atoms of polynomials: parameters, the state, sines and cosines.
 
 use crate::polynomial::Polynomial;
 use crate::rational::Rational;

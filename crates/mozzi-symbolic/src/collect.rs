@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 type Term = (Monomial, Rational);
 
-/// What grouping needs to know about atoms.
+/// The properties of atoms that grouping uses.
 pub(crate) struct Grouping<'a> {
     /// The class of each atom.
     pub classes: &'a [Class],

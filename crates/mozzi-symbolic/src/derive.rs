@@ -28,7 +28,7 @@ pub enum Collect {
     Velocities,
 }
 
-/// What is derived, and how it is written.
+/// Options of a derivation: its symbols, and how expressions are written.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
     /// The numbers that become symbols.

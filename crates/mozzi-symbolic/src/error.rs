@@ -18,7 +18,7 @@ pub enum Error {
     NotPolynomial {
         /// The quantity.
         quantity: &'static str,
-        /// What its kernel does.
+        /// The operation of its kernel that has no polynomial result.
         what: String,
     },
     /// The robot has no recursion in the book's form.
@@ -36,7 +36,7 @@ pub enum Error {
         quantity: &'static str,
         /// The entry.
         entry: usize,
-        /// What was found.
+        /// The difference that was found.
         what: String,
     },
 }

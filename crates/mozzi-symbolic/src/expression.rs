@@ -1,4 +1,4 @@
-//! What is printed: sums and products, as they are grouped on paper.
+//! Printed expressions: sums and products, as they are grouped on paper.
 
 use crate::atom::Id;
 use crate::rational::Rational;

@@ -7,7 +7,8 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A fraction in lowest terms, with a positive denominator. What fits into 64 bits is [`Small`](Rational::Small).
+/// A fraction in lowest terms, with a positive denominator. Numbers that fit into 64 bits are
+/// [`Small`](Rational::Small).
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Rational {
     /// Numerator and denominator.

@@ -20,7 +20,7 @@ impl std::error::Error for NotRead {}
 
 type Read<T> = Result<T, NotRead>;
 
-/// What a number of a robot is.
+/// The meaning of a number in a robot's description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Part {

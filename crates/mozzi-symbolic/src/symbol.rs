@@ -334,7 +334,7 @@ fn sum_of_angles(
     (s, c)
 }
 
-/// Of k π, k a multiple of 1/12.
+/// (sin kπ, cos kπ) for k a multiple of 1/12.
 fn of_pi(table: &mut Table, k: &Rational) -> Option<(Polynomial, Polynomial)> {
     let twelfths = (k * &Rational::new(12, 1)).integer()?.rem_euclid(24);
     let root = |table: &mut Table, n: i64| table.root(&Rational::new(n, 1));
@@ -362,7 +362,7 @@ fn of_pi(table: &mut Table, k: &Rational) -> Option<(Polynomial, Polynomial)> {
     Some((sine(table, twelfths)?, sine(table, twelfths + 6)?))
 }
 
-/// Of a constant in radians; each size is an angle of its own.
+/// (sin k, cos k) of a constant in radians; each |k| is an angle of its own.
 fn constant(table: &mut Table, k: &Rational) -> (Polynomial, Polynomial) {
     let angle = Angle::Constant(k.abs());
     let group = table.groups.iter().position(|group| group.angles.contains(&angle)).unwrap_or_else(|| {
@@ -373,7 +373,7 @@ fn constant(table: &mut Table, k: &Rational) -> (Polynomial, Polynomial) {
     (table.trig(group, false, vec![sign]), table.trig(group, true, vec![sign]))
 }
 
-/// Of k times a joint's position.
+/// (sin kθ, cos kθ) of a joint's position θ.
 fn of_joint(table: &mut Table, id: Id, k: &Rational) -> Option<(Polynomial, Polynomial)> {
     let is_it = |angle: &Angle| matches!(angle, Angle::Joint { position, .. } if *position == id);
     let find = |(group, one): (usize, &crate::table::Group)| Some((group, one.angles.iter().position(is_it)?));

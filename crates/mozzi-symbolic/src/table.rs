@@ -30,7 +30,7 @@ pub(crate) struct Table {
 /// Why a kernel has no result in polynomials.
 #[derive(Clone, Debug)]
 pub(crate) enum Fault {
-    /// What the kernel does that no polynomial can do.
+    /// The operation of the kernel that has no polynomial result.
     Left(String),
     /// A product of this many terms.
     TooLong(usize),
@@ -148,7 +148,7 @@ impl Table {
         if both.is_zero() { both } else { both.scaled(&Rational::new(1, 2)) }
     }
 
-    /// Of two atoms, whether their product is rewritten.
+    /// True if the product of two atoms is rewritten.
     fn meet(&self, a: Id, b: Id) -> bool {
         match (self.atom(a), self.atom(b)) {
             (Atom::Trig(a), Atom::Trig(b)) => a.group == b.group,

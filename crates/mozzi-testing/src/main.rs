@@ -31,7 +31,7 @@ struct Options {
     /// Only these quantities.
     #[arg(long, value_delimiter = ',')]
     quantities: Vec<String>,
-    /// Of the states.
+    /// Seed of the random states.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Python interpreter with `pin` and `mujoco`; without it other libraries are not measured.
@@ -44,7 +44,7 @@ struct Options {
 
 /// Largest number of states for other libraries.
 const ASKED: usize = 1000;
-/// Robots with more velocities are not sent to other libraries: their answers would be too long.
+/// Robots with more velocities are not sent to other libraries: their output would be too long.
 const LARGEST_ASKED: usize = 200;
 /// Largest number of moving links for the second way on 71 digits, which takes too long above it.
 const LARGEST_SECOND: usize = 13;

@@ -104,7 +104,7 @@ use urdf::robot;
 pub struct Loaded {
     /// The content of the file.
     pub description: Description,
-    /// By consequence, with those that change the motion first; then in the order of the file.
+    /// Sorted by consequence, with those that change the motion first; then in the order of the file.
     pub warnings: Vec<Diagnostic>,
     /// Valid content that mozzi does not use, such as appearance and contact: once per kind. See [`unused`].
     pub unused: Vec<Diagnostic>,

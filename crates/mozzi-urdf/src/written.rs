@@ -1,16 +1,16 @@
-//! What a writer of a format returns.
+//! The result of writing a robot in a format.
 
 use std::fmt;
 
-/// A robot's text in a format, and what the format cannot say.
+/// A robot's text in a format, and the properties that the format cannot express.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     /// The text.
     pub text: String,
-    /// What the text leaves out or says in other words, each with its element: "joint `a`: velocity limit 2". Empty if
+    /// Properties that the text omits or changes, each with its element: "joint `a`: velocity limit 2". Empty if
     /// reading the text gives the same robot up to rounding.
     pub losses: Vec<String>,
-    /// What readers of the format may refuse.
+    /// Elements that some readers of the format may refuse.
     pub remarks: Vec<String>,
 }
 

@@ -29,7 +29,7 @@ impl Fault {
         Box::new(Fault { is_missing_file: true, ..*Fault::new(message) })
     }
 
-    /// The same error in a text that begins this many bytes earlier.
+    /// Moves the place by this many bytes, for a text that begins earlier.
     pub fn further(mut self: Box<Fault>, by: usize) -> Box<Fault> {
         self.at = self.at.map(|at| at + by);
         self

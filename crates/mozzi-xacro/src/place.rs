@@ -28,7 +28,7 @@ impl Place {
         self.start as usize..self.end as usize
     }
 
-    /// The same in a call.
+    /// The place, expanded in a call.
     pub fn called(&self, call: &Arc<Call>) -> Place {
         Place { call: Some(call.clone()), ..*self }
     }

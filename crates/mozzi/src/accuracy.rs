@@ -16,11 +16,11 @@ pub fn normalized_error(found: &[f64], reference: &[f64], terms: f64) -> f64 {
 /// The sizes of the terms of which the dynamics' quantities are sums, at a state.
 #[derive(Clone, Copy, Debug)]
 pub struct TermSizes {
-    /// Of c: max |M| max θ̇².
+    /// Terms of c: max |M| max θ̇².
     pub velocity_product: f64,
-    /// Of h = c + g.
+    /// Terms of h = c + g.
     pub bias_forces: f64,
-    /// Of τ = Mθ̈ + h.
+    /// Terms of τ = Mθ̈ + h.
     pub inverse_dynamics: f64,
 }
 

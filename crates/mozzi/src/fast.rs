@@ -68,7 +68,7 @@ impl Workspace {
     }
 }
 
-/// What is singular at a state.
+/// The matrix that is singular at a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Singular {
     /// The mass matrix, at the joint of this velocity.
@@ -78,9 +78,8 @@ pub enum Singular {
 }
 
 impl Workspace {
-    /// What is singular according to this quantity's last call at θ, by the rule of [`Pivots`]; for
-    /// calls after which [`are_pivots_clear`](Self::are_pivots_clear) is false. M, n × n, is overwritten. No
-    /// allocation.
+    /// The matrix that was singular in this quantity's last call at θ, by the rule of [`Pivots`]; `None` if
+    /// [`are_pivots_clear`](Self::are_pivots_clear). Overwrites M (n × n). No allocation.
     ///
     /// # Panics
     /// When θ is not nq long, or M not n².
@@ -186,7 +185,7 @@ static ENTRIES: [Option<Entry>; LIST.len()] = {
     )
 };
 
-/// The same kernel, compiled for FMA (and AVX, which it implies).
+/// A quantity's kernel, compiled for FMA (and AVX, which it implies).
 #[cfg_attr(target_arch = "x86_64", target_feature(enable = "fma"))]
 fn fused<Q: Quantity>(
     of: &Subject,

@@ -93,7 +93,7 @@ pub fn tree(seed: u64, links: usize, mimics: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// The same with balls and free joints among the others, here and there.
+/// A [`tree`] in which some joints are balls or free joints.
 pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
     let mut robot = tree(seed, links, mimics).description().clone();
     let mut followed: alloc::vec::Vec<_> =
@@ -117,7 +117,8 @@ pub fn mixed_tree(seed: u64, links: usize, mimics: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// The same robot, but of joints of one axis on the same link the first moves the others, as a gripper's fingers.
+/// A copy of the robot in which all joints of one axis on the same link mimic the first of them, as a gripper's
+/// fingers.
 pub fn grippers(of: &Model) -> Model {
     let mut robot = of.description().clone();
     let mut random = Random(40);
@@ -155,7 +156,7 @@ pub fn limbs(of: &Model, length: usize) -> Model {
     robot.build().expect("a sound robot")
 }
 
-/// The same on a floating base.
+/// A [`tree`] on a floating base.
 pub fn floating_tree(seed: u64, links: usize, mimics: usize) -> Model {
     tree(seed, links, mimics).with_base(Base::Floating).expect("a sound robot")
 }
@@ -192,7 +193,7 @@ pub fn four_bar() -> Model {
         .expect("a sound robot")
 }
 
-/// The same robot with constraints that hold at θ, each between random anchors; on a floating base every second
+/// A copy of the robot with constraints that hold at θ, each between random anchors; on a floating base every second
 /// one is between a link and {s}.
 pub fn closed(model: &Model, theta: &[f64], closures: &[Closure], seed: u64) -> Model {
     let mut random = Random(seed + 5000);

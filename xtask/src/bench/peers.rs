@@ -10,7 +10,7 @@ pub struct Peer {
     pub name: &'static str,
     /// The library, or the reason why there is none.
     pub build: fn(&Workshop) -> Result<PathBuf, String>,
-    /// mozzi itself, in another language: measured only if it is asked for.
+    /// mozzi itself, in another language: measured only if `--peers` names it.
     pub is_mozzi: bool,
 }
 

@@ -8,9 +8,9 @@ pub struct Block {
     /// The words after it, between commas.
     pub options: Vec<String>,
     pub code: String,
-    /// Of its first line of code.
+    /// The number of its first line of code in the page.
     pub line: usize,
-    /// What the page shows as its output: the block `text` that follows.
+    /// The output that the page shows: the block `text` that follows.
     pub output: Option<String>,
 }
 

@@ -26,7 +26,7 @@ const GUIDES: [(&str, &str); 4] =
 const MARK: &str = "\u{1}";
 const COMPILERS: [&str; 2] = ["g++", "clang++"];
 
-/// What the blocks need.
+/// The programs and libraries that the blocks need.
 struct Tools {
     /// PATH with the folders of `mozzi` and of the tests' Python in front.
     path: OsString,
@@ -153,7 +153,7 @@ impl Page<'_> {
         if succeeded { Ok(out) } else { Err(format!("it failed: {error}")) }
     }
 
-    /// What a terminal would show, whatever the exit status.
+    /// Runs a command; its output as a terminal shows it, whatever the exit status.
     fn session(&self, tools: &Tools, command: &str) -> Result<String, String> {
         let script = format!("{command} 2>&1");
         let mut shell = Command::new("sh");

@@ -8,7 +8,7 @@ use crate::report::Outcome;
 use crate::workspace::Workspace;
 use std::process::Command;
 
-/// What people search for, and the page that must come first.
+/// Typical queries, and the page that must come first.
 const QUERIES: [(&str, &str); 16] = [
     ("gravity compensation at 1 kHz in C++", "use/gravity-compensation.html"),
     ("why does Pinocchio differ", "use/compare.html"),

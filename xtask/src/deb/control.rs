@@ -27,7 +27,7 @@ pub struct Package {
 }
 
 impl Package {
-    /// Of the maintainer whom Debian's DEBFULLNAME and DEBEMAIL name.
+    /// A package for this machine's processor, by the maintainer in DEBFULLNAME and DEBEMAIL.
     pub fn of_this_machine(version: String) -> Result<Package, String> {
         let (architecture, multiarch) = match std::env::consts::ARCH {
             "x86_64" => ("amd64", "x86_64-linux-gnu"),
@@ -44,7 +44,7 @@ impl Package {
         format!("{}-unknown-linux-gnu", std::env::consts::ARCH)
     }
 
-    /// The same with the version of glibc, as cargo-zigbuild reads it.
+    /// The target with the version of glibc, as cargo-zigbuild reads it.
     pub fn target(&self) -> String {
         format!("{}.2.{GLIBC}", self.triple())
     }

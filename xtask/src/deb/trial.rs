@@ -1,4 +1,4 @@
-//! What a user does with the Debian package: install it, run the first command, build a C++ program with it.
+//! A trial of the Debian package: install it, run the first command, build a C++ program with it.
 
 use crate::command;
 use crate::report::Outcome;
@@ -9,7 +9,7 @@ use std::process::Command;
 /// A state of the UR5, whose torques README shows.
 const STATE: [&str; 5] = ["compute", "ur5", "inverse-dynamics", "--theta", "0,-1.2,1.5,0.3,1.1,0"];
 
-/// What lintian says of a maintainer without an address.
+/// Tags that lintian reports for a maintainer without an address.
 const NO_ADDRESS: &str = "bogus-mail-host,bogus-mail-host-in-debian-changelog";
 
 /// Installs the package into an empty root and uses it there.

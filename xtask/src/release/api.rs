@@ -30,7 +30,7 @@ pub fn write(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// Lists all items by rustdoc's JSON, which compilers of this version write only if they are told to be unstable.
+/// Lists all items from rustdoc's JSON, which stable compilers write only with RUSTC_BOOTSTRAP=1.
 fn list(workspace: &Workspace, folder: &Path) -> Result<Vec<(&'static str, usize)>, String> {
     let target = workspace.path("target/api");
     let mut files = Vec::new();

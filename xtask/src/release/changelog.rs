@@ -3,7 +3,7 @@
 use crate::report::Outcome;
 use crate::workspace::Workspace;
 
-/// Checks the headings, and that there is something to say about this version.
+/// Checks the headings, and that this version or `Unreleased` has entries.
 pub fn check(workspace: &Workspace, version: &str) -> Outcome {
     match std::fs::read_to_string(workspace.path("CHANGELOG.md")) {
         Ok(text) => said(&text, version).map_or_else(Outcome::Failed, Outcome::Passed),

@@ -1,4 +1,4 @@
-//! What a user would do with the published crates, done with the packages.
+//! A user's first program, built from the packages instead of the published crates.
 
 use super::packages;
 use crate::command;

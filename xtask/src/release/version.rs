@@ -1,4 +1,4 @@
-//! The version, wherever it is said, and the compiler.
+//! The version in all files that state it, and the compiler.
 
 use crate::command;
 use crate::report::Outcome;
@@ -16,7 +16,7 @@ pub fn tree(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// Checks that the files say this version, and that this compiler is the oldest that is promised.
+/// Checks that the files state this version, and that this compiler is the oldest that is promised.
 pub fn check(workspace: &Workspace, version: &str) -> Outcome {
     if version.split('.').count() != 3 || !version.split('.').all(|part| part.parse::<u32>().is_ok()) {
         return Outcome::Failed(format!("`{version}` is no version, expected as 1.2.3"));

@@ -19,7 +19,7 @@ pub struct Build {
     /// CPU seconds.
     pub total: f64,
     pub packages: Vec<String>,
-    /// Of the program.
+    /// The size of the program.
     pub bytes: u64,
     pub machine: String,
 }

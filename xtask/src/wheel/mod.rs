@@ -19,7 +19,7 @@ const PACKAGE: &str = "crates/mozzi-py";
 const FOLDER: &str = "target/wheels";
 /// maturin, and zig for its linker and its C libraries of old versions.
 const TOOLS: &str = "crates/mozzi-py/requirements-wheel.txt";
-/// Of a wheel; docs/weight.md has the budget that it is to reach.
+/// The largest size of a wheel; docs/weight.md has the budget that it is to reach.
 const MOST_BYTES: u64 = 13_000_000;
 
 const ELSEWHERE: &str = "\

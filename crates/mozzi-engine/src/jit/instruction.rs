@@ -44,7 +44,7 @@ pub(crate) enum Half {
     Upper,
 }
 
-/// What stays together.
+/// The unit that [`Interleave`](Operation::Interleave) moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Grain {
     Bits32,

@@ -12,7 +12,7 @@ pub(crate) struct Lowered {
     pub nodes: Vec<Node>,
     /// Entries of arrays in blocks.
     pub outputs: Vec<Vec<Value>>,
-    /// What is written into tables; see [`by_rows`](super::rows::by_rows).
+    /// Values that are written into tables: see [`by_rows`](super::rows::by_rows).
     pub stores: Vec<Store>,
     /// The code that runs first, on registers of several numbers: the sines and cosines of neighbouring angles of one
     /// state, in the shape [`together`](Shape::together). Its inputs are a register of an array from an entry on; its

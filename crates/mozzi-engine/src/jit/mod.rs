@@ -70,8 +70,8 @@ impl std::error::Error for Refusal {}
 pub enum Form {
     /// Blocks of a register's states: entry by entry, the lanes of each contiguous.
     Blocks,
-    /// Rows of the caller's tables, state by state; for shapes of several states. What outputs are
-    /// [condensed](Kernel::condensing) to, and the squares of angles, are in blocks, one after the other.
+    /// Rows of the caller's tables, state by state; for shapes of several states. [Condensed](Kernel::condensing)
+    /// outputs, and the squares of angles, are in blocks, one after the other.
     Rows,
 }
 
@@ -98,8 +98,8 @@ impl Kernel {
         Self::condensing(program, shape, Form::Blocks, usize::MAX)
     }
 
-    /// Likewise, in this form; and each output from index `condensed` on is replaced by its smallest entry and the sum
-    /// of its entries, which is enough to check pivots.
+    /// The machine code of a program in this form. Each output from index `condensed` on is replaced by its smallest
+    /// entry and the sum of its entries, which is enough to check pivots.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -111,7 +111,7 @@ impl Kernel {
         Self::cut_if(cuts, program, shape, form, condensed)
     }
 
-    /// Likewise, and long code is cut into [`segments`] or not.
+    /// As [`condensing`](Self::condensing); long code is cut into [`segments`] if `cuts`.
     fn cut_if(cuts: bool, program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Self, Refusal> {
         shape.check()?;
         let Made { code, extents, inputs, flops } = made(cuts, program, shape, form, condensed)?;

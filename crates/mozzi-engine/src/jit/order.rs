@@ -16,7 +16,7 @@ pub(crate) const LONGEST: usize = 6000;
 /// Instructions among which the next is chosen, in recorded order.
 const WINDOW: usize = 128;
 
-/// The same program in this order.
+/// Reorders a program's nodes by [`order`], and renumbers its values.
 pub(crate) fn ordered(lowered: Lowered, shape: Shape) -> Lowered {
     let order = order(&lowered.nodes, shape.most_alive(lowered.nodes.len()));
     let mut place = vec![0; order.len()];

@@ -1,4 +1,4 @@
-//! What the registers hold, and which is freed for a new value.
+//! The contents of the registers, and the choice of the one that is freed for a new value.
 
 use super::instruction::Value;
 use super::operand::Register;

@@ -22,20 +22,20 @@ impl Extent {
         self.size.saturating_add((runs - 1).saturating_mul(self.step))
     }
 
-    /// Of an array in blocks: entry after entry, the lanes of each contiguous.
+    /// An array in blocks: entry after entry, the lanes of each contiguous.
     pub(crate) fn of_block(entries: usize, shape: Shape) -> Self {
         let size = entries * shape.lanes();
         Extent { size, step: size }
     }
 
-    /// Of a table of this width. A whole register is loaded from the beginning of a narrow row.
+    /// Reads a row-major table of this width; narrow rows are loaded with one full register.
     pub(crate) fn of_input(width: usize, shape: Shape) -> Self {
         let lanes = shape.lanes();
         let beyond = if width == 0 { 0 } else { lanes.saturating_sub(width) };
         Extent { size: lanes * width + beyond, step: lanes * width }
     }
 
-    /// Likewise, to be written: but by AVX2, nothing is written beyond a row.
+    /// Writes a row-major table of this width. Only AVX2 writes beyond a row.
     pub(crate) fn of_output(width: usize, shape: Shape) -> Self {
         match shape.encoding() {
             Encoding::Vex => Self::of_input(width, shape),
@@ -49,7 +49,7 @@ fn square_of(column: usize, width: usize, lanes: usize) -> usize {
     (column / lanes * lanes).min(width.saturating_sub(lanes))
 }
 
-/// The same program on tables with these numbers of columns: its inputs, and its first `own` outputs.
+/// Makes the inputs and the first `own` outputs of a program row-major tables with these numbers of columns.
 pub(crate) fn by_rows(lowered: Lowered, shape: Shape, widths: &[usize], own: usize) -> Lowered {
     let Lowered { nodes, mut outputs, .. } = lowered;
     let mut line = Line { shape, nodes: Vec::with_capacity(2 * nodes.len()), read: Vec::new(), stores: Vec::new() };

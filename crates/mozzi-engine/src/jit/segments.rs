@@ -1,6 +1,7 @@
-//! Segments of long code. What exceeds the first-level cache of instructions would be fetched anew for every register
-//! of states; cut into segments that fit, each of which runs on a group of registers before the next, it is fetched
-//! once a group. Between segments all values are in the frame, of which each register of the group has its own.
+//! Segments of long code. Code that exceeds the first-level instruction cache would be fetched anew for every register
+//! of states. It is therefore cut into segments that fit; each runs on a group of registers before the next, and is
+//! fetched once per group. Between segments all values are in the frame, of which each register of the group has its
+//! own.
 //!
 //! By AVX2 long programs take 0.82 to 0.97 of the time, on a Zen 5 by AVX-512 0.86 to 0.92; on a Zen 4, whose 512-bit
 //! instructions take two turns, 0.95 to 1.06 (docs/performance-log.md).
@@ -33,7 +34,7 @@ pub(crate) fn group(shape: Shape) -> usize {
     SLOT / shape.width()
 }
 
-/// True if the processor says that its data paths are 512 bits wide: AMD's do, in bit 3 of function 8000001Ah.
+/// True if the processor reports 512-bit data paths. AMD processors do, in bit 3 of CPUID function 8000001Ah.
 #[cfg(target_arch = "x86_64")]
 fn has_full_width() -> bool {
     use std::arch::x86_64::__cpuid;

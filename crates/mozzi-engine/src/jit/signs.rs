@@ -1,6 +1,6 @@
 //! Signs outside the instructions, for AArch64. Its vectors have c + a b and c − a b, but not a b − c and not −a b − c:
 //! these are computed as −(c − a b) and −(c + a b), and the sign goes on into what uses them, where it costs nothing.
-//! Numbers are the same to the bit, but for the sign of zeros. What works on bits takes the number itself; exchanges by
+//! Results agree bit for bit, except for the sign of zeros. Operations on bits take the number itself; exchanges by
 //! three operations on bits become selections.
 
 use super::instruction::{Node, Operation, Value};
@@ -20,7 +20,7 @@ struct Line {
     has_all: bool,
 }
 
-/// The same program.
+/// Moves the signs of a program out of its instructions. Results agree bit for bit, except for the sign of zeros.
 pub(crate) fn moved_out(lowered: Lowered, shape: Shape) -> Lowered {
     let Lowered { nodes, mut outputs, stores, before } = lowered;
     let sign_bit = if shape.is_f64() { 1 << 63 } else { 1 << 31 };

@@ -1,5 +1,5 @@
-//! What a machine must offer to become a target: an assembler with its forms. Order, allocation, segments, rows, cache
-//! and guards are shared; a [`Shape`] knows its registers and what pays on its machine.
+//! The interface of a target: an assembler with its forms. Order, allocation, segments, rows, cache and guards are
+//! shared; a [`Shape`] has the registers and the cost rules of its machine.
 
 use super::allocate::Line;
 use super::instruction::{Operation, Value};

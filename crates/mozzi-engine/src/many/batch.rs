@@ -34,7 +34,7 @@ pub struct Batch<T: Number = f64> {
     /// That of machine code; none if the processor has none, or for kernels only.
     shape: Result<Shape, Refusal>,
     threads: Threads,
-    /// Does dry friction stick in simulations?
+    /// True if dry friction sticks in simulations.
     sticks: bool,
     /// Workers left by earlier calls.
     pool: Pool,
@@ -126,7 +126,7 @@ impl<T: Number> Batch<T> {
         &self.pool
     }
 
-    /// The same batch with these threads.
+    /// A copy of the batch that runs on these threads.
     pub(crate) fn on(&self, threads: Threads) -> Self {
         Batch { threads, ..self.clone() }
     }
@@ -204,9 +204,9 @@ impl<T: Number> Batch<T> {
         Ok(made.is_ok().then_some(entry))
     }
 
-    /// The same batch for a job of several calls: it computes each of these quantities in this environment by the
-    /// engine of one call of so many states, and everything else as earlier calls have decided. Threads that share it
-    /// do not change that.
+    /// A copy of the batch for a job of several calls, whose choice of engine is fixed: each of these quantities in
+    /// this environment is computed by the engine that a single call of `states` states would use, and every other
+    /// quantity as earlier calls have decided. Calls from several threads do not change the choice.
     ///
     /// # Errors
     /// [`Error::Model`] if a frame is missing or belongs to another model.
@@ -224,9 +224,8 @@ impl<T: Number> Batch<T> {
         Ok(Batch { programs: Programs::of(entries), is_decided: true, ..self.clone() })
     }
 
-    /// The same batch with these quantities as machine code in the robot's own environment, if there is code for this
-    /// machine and the batch is not one of [kernels only](Self::kernels_only): see [`engine`](Self::engine). Clones
-    /// share the code.
+    /// Compiles these quantities to machine code now, in the robot's own environment, if there is code for this machine
+    /// and the batch is not [kernels only](Self::kernels_only): see [`engine`](Self::engine). Clones share the code.
     ///
     /// # Errors
     /// [`Error::Model`] if the frame is missing or belongs to another model.

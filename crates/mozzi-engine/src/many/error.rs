@@ -55,7 +55,7 @@ pub enum Error {
     Threads {
         /// The requested number of threads.
         threads: usize,
-        /// What was expected.
+        /// The reason: the system's error, or the expected number of threads.
         reason: String,
     },
 }
@@ -69,7 +69,7 @@ impl Error {
         }
     }
 
-    /// The same error, its state's index counted from `first` on.
+    /// Adds `first` to the index of the state.
     pub(crate) fn after(self, first: usize) -> Self {
         match self {
             Error::State { index, source } => Error::State { index: first + index, source },

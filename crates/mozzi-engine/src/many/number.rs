@@ -11,7 +11,7 @@ pub trait Number: Float + Bits<Number = Self> + Into<f64> + Send + Sync + 'stati
     /// These numbers, if they are `f64`.
     fn as_f64(numbers: &[Self]) -> Option<&[f64]>;
 
-    /// Likewise.
+    /// These numbers, if they are `f64`, mutably.
     fn as_f64_mut(numbers: &mut [Self]) -> Option<&mut [f64]>;
 
     /// The widest shape that this processor runs.

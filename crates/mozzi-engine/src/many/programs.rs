@@ -8,8 +8,9 @@ use mozzi::{Error, FrameId, Model, TaskFrame};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Machine code is made once a batch has been asked for this many states of a quantity: recording and lowering take as
-/// long as the kernels take for about so many (`cargo run --release -p mozzi-engine --example when_code_pays`).
+/// Machine code is made once the calls of a batch have computed this many states of a quantity. Recording and lowering
+/// take as long as the kernels take for about this many states (`cargo run --release -p mozzi-engine --example
+/// when_code_pays`).
 pub(crate) const PAYS: usize = 1000;
 
 /// The number of quantities whose counts and code are kept, beside those that were compiled explicitly.

@@ -38,13 +38,13 @@ impl BatchRollout {
 /// A gradient's tables, by robot.
 #[derive(Debug)]
 pub struct BatchGradient<'a> {
-    /// By θ\[0\], along the velocities, (B, n).
+    /// With respect to θ\[0\], along the velocities, (B, n).
     pub theta: &'a mut [f64],
-    /// By θ̇\[0\], (B, n).
+    /// With respect to θ̇\[0\], (B, n).
     pub dtheta: &'a mut [f64],
-    /// By τ, (B, N, n).
+    /// With respect to τ, (B, N, n).
     pub tau: &'a mut [f64],
-    /// By each robot's [`parameters`](Model::parameters), (B, p); empty if not wanted.
+    /// With respect to each robot's [`parameters`](Model::parameters), (B, p); empty if not wanted.
     pub parameters: &'a mut [f64],
 }
 
@@ -86,7 +86,7 @@ impl Batch<f64> {
     }
 
     /// The vector-Jacobian product of [`rollout`](Self::rollout): from cotangents θ̄ (along the velocities) and θ̇̄ of
-    /// all states, both (B, N + 1, n), the gradient by the starts, the torques and the parameters.
+    /// all states, both (B, N + 1, n), the gradient with respect to the starts, the torques and the parameters.
     ///
     /// # Errors
     /// As [`rollout`](Self::rollout).
@@ -287,7 +287,7 @@ struct Rows<'a> {
     lost: Option<Lost>,
     /// Filled by a rollout.
     states: [&'a mut [f64]; 2],
-    /// The cotangents of the states, and the gradient by τ: of a gradient.
+    /// The cotangents of the states, and the gradient with respect to τ; `None` without gradients.
     bars: Option<([&'a [f64]; 2], &'a mut [f64])>,
 }
 

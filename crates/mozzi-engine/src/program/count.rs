@@ -27,7 +27,7 @@ impl Count {
         self.instructions() + self.fma
     }
 
-    /// The same, with a fused multiply-add counted as one.
+    /// As [`flops`](Self::flops), with a fused multiply-add counted as one.
     pub fn instructions(&self) -> usize {
         self.add + self.mul + self.fma + self.div + self.sqrt + self.other
     }

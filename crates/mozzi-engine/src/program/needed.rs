@@ -28,9 +28,9 @@ fn pairs(program: &Program, n: usize) -> Vec<Value> {
 }
 
 impl Program {
-    /// The same program in another order: for each of these values in turn, the steps that it needs and no earlier
-    /// value needed, as they were recorded; then the rest. Where values of the outputs are finished one by one, less is
-    /// alive at the same time.
+    /// Reorders the program. For each of these values in turn, the steps follow that it needs and no earlier value
+    /// needed, in recorded order; then the other steps. If the values of the outputs are finished one by one, fewer
+    /// values are alive at the same time.
     ///
     /// # Panics
     /// If a value is not of this program.

@@ -32,8 +32,8 @@ pub enum PlaneMotion<'a> {
     Fixed(SE3),
     /// A belt: the plane is at rest, its surface moves with this velocity in {s}, m/s.
     Belt(SE3, Vec3),
-    /// Of the time in seconds: its configuration in {s}, and its angular velocity and the velocity of its origin, in
-    /// the axes of {s}.
+    /// Maps time (s) to the plane's configuration in {s}, and to its angular velocity and the velocity of its origin,
+    /// in the axes of {s}.
     Moving(Box<dyn Fn(f64) -> (SE3, Twist) + 'a>),
 }
 
@@ -54,7 +54,7 @@ pub struct ContactEvent {
     pub t: f64,
     /// The contact: see [`Contacts::names`].
     pub contact: String,
-    /// What happens.
+    /// The change.
     pub change: ContactChange,
 }
 
@@ -152,7 +152,7 @@ impl<'a> Plane<'a> {
 }
 
 impl Contacts<'_> {
-    /// Are there no contacts?
+    /// True if there are no points or no planes.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty() || self.planes.is_empty()
     }

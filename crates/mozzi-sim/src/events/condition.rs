@@ -14,7 +14,7 @@ const LIMIT: &str = "joint-limit";
 /// A message lists at most this many of a robot's names.
 const LISTED: usize = 12;
 
-/// What a condition compares with a number.
+/// The quantity that a condition compares with a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Measured {
     Position(usize),
@@ -74,13 +74,14 @@ impl<'m> Event<'m> {
         Ok(vec![Event { direction, ..Event::new(text, function) }])
     }
 
-    /// Is its condition already true at (θ, θ̇)? It then counts only when it becomes true again.
+    /// True if a rising or falling event is already beyond its zero at (θ, θ̇). It then counts only when it becomes
+    /// true again.
     pub fn is_true_at(&self, theta: &[f64], dtheta: &[f64]) -> bool {
         let now = (self.function)(0.0, theta, dtheta);
         self.direction == Direction::Rising && now > 0.0 || self.direction == Direction::Falling && now < 0.0
     }
 
-    /// Is an event of this name from this condition?
+    /// True if an event of this name comes from this condition.
     pub fn is_of(name: &str, condition: &str) -> bool {
         let condition = condition.trim();
         if condition == LIMIT { name.starts_with(LIMIT) } else { name == condition }

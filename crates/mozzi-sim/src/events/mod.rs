@@ -19,7 +19,7 @@ use mozzi::model::{Bounds, Freedom, Model};
 /// Which zeros of an event's function count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// All.
+    /// All zeros.
     Any,
     /// From below 0 to above.
     Rising,
@@ -33,13 +33,13 @@ pub struct Event<'a> {
     pub name: String,
     /// Which zeros count.
     pub direction: Direction,
-    /// Does the simulation end there?
+    /// True if the simulation ends at the event.
     pub stop: bool,
     /// The function.
     pub function: EventFunction<'a>,
 }
 
-/// Of (t, θ, θ̇).
+/// A function of t (s), θ and θ̇.
 pub type EventFunction<'a> = Box<dyn Fn(f64, &[f64], &[f64]) -> f64 + 'a>;
 
 impl<'a> Event<'a> {
@@ -80,7 +80,7 @@ pub struct Occurrence {
     pub theta: Vec<f64>,
     /// θ̇ there; if the joint comes to rest at its limit there, θ̇ before the impact.
     pub dtheta: Vec<f64>,
-    /// Did the simulation end there?
+    /// True if the simulation ended there.
     pub stop: bool,
 }
 
@@ -121,7 +121,7 @@ pub(crate) fn bisect(f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64)) ->
     bisect_until([0.0; 2], f, a, b)
 }
 
-/// The same, until |f| < `enough` or the zero is known to `width`. Chandrupatla's method (1997): the parabola t(f)
+/// As [`bisect`], until |f| < `enough` or the zero is known to `width`. Chandrupatla's method (1997): the parabola t(f)
 /// through the last three points where it is monotonic, else bisection, so that jumps are found as well.
 pub(crate) fn bisect_until(
     [enough, width]: [f64; 2],

@@ -31,7 +31,7 @@ pub struct Stopped {
 /// The state of the joints' limits along a motion.
 pub(crate) struct Stops {
     policy: Policy,
-    /// Do the steps stop the joints themselves, by impulses?
+    /// True if the method stops joints itself, by impulses.
     by_impulses: bool,
     bounds: Bounds,
     /// Joint and side, lower (0) or upper (1), of every limit that can be reached.
@@ -39,7 +39,7 @@ pub(crate) struct Stops {
     names: Vec<String>,
     /// Lower and upper, joint by joint.
     noted: Vec<[Option<Stopped>; 2]>,
-    /// Is the joint beyond it now?
+    /// True if the joint is beyond this limit now.
     beyond: Vec<[bool; 2]>,
 }
 
@@ -84,7 +84,7 @@ impl Stops {
         all
     }
 
-    /// Do limits act that the method has no stops for?
+    /// True if limits are respected and the method has no stops.
     pub fn are_missed(&self) -> bool {
         self.policy == Policy::Respect && !self.by_impulses
     }

@@ -124,7 +124,7 @@ impl Solved {
         [-0.5 * self.p.dot(&twice), self.p.dot(&system.w)]
     }
 
-    /// Is p inside its cone, so that the contact sticks?
+    /// True if p is inside its friction cone, so that the contact sticks; always false for dry friction and stops.
     pub fn sticks(&self, system: &System, first: usize, law: Law) -> bool {
         let Law::Contact { mu } = law else { return false };
         let g = system.G[(first + 1, first + 1)].max(f64::MIN_POSITIVE);

@@ -1,5 +1,5 @@
-//! The contact points that may touch a plane in a step. What no plane is near is passed over by spheres around it; of
-//! many points of a body at a plane few count: the deepest, and those farthest from the ones before.
+//! The contact points that may touch a plane in a step. Bounding spheres exclude points that are far from every plane.
+//! If many points of a body are near a plane, only a few count: the deepest, and those farthest from the ones before.
 
 use super::{Impulses, Key};
 use crate::contacts::{Contacts, Surface, Touch};

@@ -36,7 +36,8 @@ enum OpenRow {
 
 impl Impulses<'_> {
     /// θ ← θ ⊕ δ with the least δᵀMδ that brings the contacts and stops that carried in the last step to gap 0, from
-    /// either side, and sticking points back to their anchors. `h` is the length of the step. Did θ change?
+    /// either side, and sticking points back to their anchors. `h` is the length of the step. Returns true if θ
+    /// changed.
     pub fn correct(&mut self, t: f64, theta: &mut [f64], h: f64) -> Result<bool, Error> {
         let stopped = core::mem::take(&mut self.memory.stopped);
         if self.memory.carrying.is_empty() {

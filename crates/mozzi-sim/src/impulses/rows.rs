@@ -14,7 +14,7 @@ use mozzi::model::{FrameId, Freedom};
 use mozzi::spatial::Twist;
 use nalgebra::{DMatrix, DVector, DVectorView, RowDVector};
 
-/// What a block of rows belongs to.
+/// The source of a block of rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Key {
     /// A row of the robot's constraints.

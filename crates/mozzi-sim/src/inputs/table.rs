@@ -63,7 +63,7 @@ impl Table {
         Ok(Table { times, values, outside: Outside::Error })
     }
 
-    /// The same table, extrapolated like this.
+    /// Sets how the table is extrapolated outside its time range.
     pub fn outside(self, outside: Outside) -> Self {
         Table { outside, ..self }
     }

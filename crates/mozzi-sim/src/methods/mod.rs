@@ -66,7 +66,7 @@ impl Method {
         }
     }
 
-    /// Are its steps adaptive, chosen by a tolerance?
+    /// True if a tolerance determines its step size.
     pub fn is_adaptive(self) -> bool {
         matches!(self, Method::DormandPrince { .. })
     }

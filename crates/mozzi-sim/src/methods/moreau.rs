@@ -59,7 +59,7 @@ struct Trial {
     system: System,
     solved: Solved,
     to: Phase,
-    /// Did θ̇⁺ converge?
+    /// True if the iteration for θ̇⁺ converged.
     settles: bool,
 }
 
@@ -272,7 +272,7 @@ impl Moreau {
     }
 }
 
-/// Would a shorter step help?
+/// True for errors that a shorter step may avoid.
 fn is_too_long(error: &Error) -> bool {
     matches!(error, Error::Opened { .. } | Error::Diverged { .. })
 }

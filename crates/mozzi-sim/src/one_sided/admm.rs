@@ -41,7 +41,7 @@ impl Admm {
         &self.y
     }
 
-    /// Have both residuals fallen below the tolerance?
+    /// True once both residuals are below the tolerance.
     pub fn is_done(&self) -> bool {
         self.done
     }

@@ -23,18 +23,18 @@ pub fn stages(method: Explicit) -> usize {
     if method == Explicit::RungeKutta4 { 4 } else { 1 }
 }
 
-/// Memory for the adjoint of one step. Of many robots, their numbers are one after the other.
+/// Memory for the adjoint of one step. With several robots, each list holds their numbers one after the other.
 #[derive(Clone, Debug)]
 pub struct Adjoint {
     space: ConfigurationSpace,
     is_flat: bool,
-    /// Of one robot.
+    /// The number of velocities of one robot.
     n: usize,
     /// wᵢ, stage after stage, and the cotangents of wᵢ and aᵢ.
     w: [Vec<f64>; 4],
     w_bar: [Vec<f64>; 4],
     a_bar: [Vec<f64>; 4],
-    /// Of one stage: uᵢ, its cotangents by ⊕ and by the rate, and the products of forward dynamics.
+    /// Scratch for one stage: uᵢ, its cotangents from ⊕ and from the rate, and the products of forward dynamics.
     u: Vec<f64>,
     u_bar: [Vec<f64>; 2],
     products: [Vec<f64>; 3],

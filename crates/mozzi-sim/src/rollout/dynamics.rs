@@ -1,4 +1,4 @@
-//! What the steps of a rollout evaluate: θ̈ and its vector-Jacobian products.
+//! The functions that the steps of a rollout evaluate: θ̈ and its vector-Jacobian products.
 
 use super::ParameterGradient;
 use crate::Error;

@@ -65,13 +65,13 @@ pub struct RolloutStates {
 /// The gradient of a loss of a rollout's states.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RolloutGradient {
-    /// By θ\[0\], n numbers along the velocities.
+    /// With respect to θ\[0\], n numbers along the velocities.
     pub theta: Vec<f64>,
-    /// By θ̇\[0\], n numbers.
+    /// With respect to θ̇\[0\], n numbers.
     pub dtheta: Vec<f64>,
-    /// By τ\[0\] … τ\[N − 1\], N × n.
+    /// With respect to τ\[0\] … τ\[N − 1\], N × n.
     pub tau: Vec<f64>,
-    /// By the [`parameters`](Model::parameters) π, p numbers; empty unless
+    /// With respect to the [`parameters`](Model::parameters) π, p numbers; empty unless
     /// [wanted](Rollout::with_parameter_gradient).
     pub parameters: Vec<f64>,
 }
@@ -105,14 +105,14 @@ pub struct Rollout<'m> {
     steps: Kind<'m>,
 }
 
-/// What takes the steps.
+/// The steps of each kind of integrator.
 enum Kind<'m> {
     Explicit(Box<Steps<ExplicitSteps<OneRobot<'m>>>>),
     Midpoint(Box<Steps<MidpointSteps<'m>>>),
     Constrained(Box<Steps<ConstrainedSteps<'m>>>),
 }
 
-/// The same with either kind of steps.
+/// Evaluates an expression with the steps of whichever kind the rollout has.
 macro_rules! with_steps {
     ($rollout:ident, |$steps:ident| $value:expr) => {
         match &mut $rollout.steps {

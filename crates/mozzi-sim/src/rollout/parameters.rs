@@ -13,16 +13,16 @@ use mozzi::fast;
 use mozzi::model::{Environment, Model};
 use mozzi::quantities::{InverseDynamicsParameterVjp, Query};
 
-/// Memory for the vector-Jacobian products of forward dynamics by the [`parameters`](Model::parameters) π.
+/// Memory for the vector-Jacobian products of forward dynamics with respect to the [`parameters`](Model::parameters) π.
 #[derive(Clone, Debug)]
 pub struct ParameterGradient {
     workspace: fast::Workspace,
-    /// The products by π, placements, axes and gravity; empty before the first use.
+    /// The products with respect to π, placements, axes and gravity; empty before the first use.
     products: [Vec<f64>; 4],
 }
 
 impl ParameterGradient {
-    /// For robots like this one.
+    /// Scratch memory for this model.
     pub fn new(model: &Model) -> Self {
         ParameterGradient { workspace: fast::Workspace::new(model), products: Default::default() }
     }

@@ -1,19 +1,19 @@
-//! What takes the steps of a rollout, and takes cotangents back through them.
+//! The interface of integrators for rollouts: steps forward, and cotangents back through them.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// The running cotangents of a state, and the gradients of one step and of all parameters. Of many robots, their
-/// numbers are one after the other.
+/// The running cotangents of a state, and the gradients of one step and of all parameters. With several robots, each
+/// list holds their numbers one after the other.
 #[derive(Clone, Debug)]
 pub struct Cotangents {
-    /// Of θ, along the velocities.
+    /// The cotangent of θ, along the velocities.
     pub theta: Vec<f64>,
-    /// Of θ̇.
+    /// The cotangent of θ̇.
     pub dtheta: Vec<f64>,
-    /// The gradient by τ of the last step.
+    /// The gradient with respect to τ of the last step.
     pub tau: Vec<f64>,
-    /// The gradient by the parameters so far; empty if not wanted.
+    /// The gradient with respect to the parameters so far; empty if not wanted.
     pub parameters: Vec<f64>,
 }
 

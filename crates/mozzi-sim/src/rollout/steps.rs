@@ -19,10 +19,10 @@ pub trait Tables {
     /// Takes state k, from 0 to N.
     fn record(&mut self, k: usize, theta: &[f64], dtheta: &[f64]);
 
-    /// Adds the loss's own gradient by state k, along the velocities and by θ̇. Called from k = N to 0.
+    /// Adds the loss's own gradient with respect to state k: θ (along the velocities) and θ̇. Called from k = N to 0.
     fn cotangent(&mut self, k: usize, theta: &[f64], dtheta: &[f64], theta_bar: &mut [f64], dtheta_bar: &mut [f64]);
 
-    /// Takes the gradient by τ of step k.
+    /// Takes the gradient with respect to τ of step k.
     fn take(&mut self, k: usize, tau_bar: &[f64]);
 
     /// θ and θ̇ of state k if all states are there already.
@@ -35,7 +35,7 @@ pub trait Tables {
 /// N steps of one robot or of many of one model, τ held over each.
 #[derive(Debug)]
 pub struct Steps<S> {
-    /// What takes the steps.
+    /// The integrator.
     pub stepper: S,
     tau: Vec<f64>,
     checkpoints: Vec<[Vec<f64>; 2]>,
@@ -44,7 +44,7 @@ pub struct Steps<S> {
     parameters: usize,
 }
 
-/// The gradient of a loss by the start of a rollout and by the parameters.
+/// The gradient of a loss with respect to the start of a rollout and the parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct StartGradient<'a> {
     /// Along the velocities, n numbers (of each robot).
@@ -168,7 +168,7 @@ impl<S: Stepper> Steps<S> {
         Ok(())
     }
 
-    /// Adds the loss's gradient by the state in which the robot is.
+    /// Adds the loss's gradient with respect to the present state.
     fn loss(&mut self, k: usize, tables: &mut impl Tables) {
         let ([theta, dtheta], to) = (self.stepper.state(), &mut self.cotangents);
         tables.cotangent(k, theta, dtheta, &mut to.theta, &mut to.dtheta);

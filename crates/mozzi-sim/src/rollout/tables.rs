@@ -1,4 +1,4 @@
-//! What the steps of a rollout read and write, row by row: torques in; states, or gradients by the torques, out.
+//! The tables of a rollout, row by row: torques in; states, or gradients with respect to the torques, out.
 
 use super::{RolloutStates, Tables};
 

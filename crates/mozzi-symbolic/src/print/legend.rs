@@ -1,4 +1,4 @@
-//! What the symbols are in the file.
+//! The legend: the meaning of each symbol in the robot's file.
 
 use super::Style;
 use crate::parameters::Meaning;

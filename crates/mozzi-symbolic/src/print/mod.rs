@@ -223,7 +223,7 @@ impl Formula {
 }
 
 impl Derivation {
-    /// The letter of a formula: energies are told apart by their quantity.
+    /// The letter of a formula: K or P for energies, whichever the quantity is.
     pub(crate) fn letter(&self, formula: &Formula) -> Letter {
         let (letter, dots) = match (self.quantity, formula.name) {
             ("kinetic_energy", _) => ("K", 0),

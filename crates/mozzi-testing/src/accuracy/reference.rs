@@ -50,7 +50,7 @@ pub fn evaluate<S: Entry>(
     values
 }
 
-/// The same numbers in a wider type.
+/// Converts numbers to a wider type, exactly.
 pub fn widen<S: Scalar>(inputs: &[&[f64]]) -> Vec<Vec<S>> {
     inputs.iter().map(|x| x.iter().map(|&x| S::from_f64(x)).collect()).collect()
 }

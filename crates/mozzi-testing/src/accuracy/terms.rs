@@ -10,9 +10,9 @@ use nalgebra::DMatrix;
 
 /// The largest term of each output at a state; None for other quantities.
 ///
-/// Of X = M⁻¹B, where M's entries are rounded one by one: δX = −M⁻¹ δM X, so |M⁻¹| |M| |X|. Of Λ = (J M⁻¹Jᵀ)⁻¹: |Λ|
-/// K |Λ| with K = |J| |M⁻¹| |M| |M⁻¹| |J|ᵀ. Of η = Λ(J u − J̇θ̇), u = M⁻¹h: |Λ| (|J| |M⁻¹| |M| |u| + K |η|). Of Ṁ = C +
-/// Cᵀ: |C| + |C|ᵀ.
+/// X = M⁻¹B, where M's entries are rounded one by one: δX = −M⁻¹ δM X, hence |M⁻¹| |M| |X|. Λ = (J M⁻¹Jᵀ)⁻¹: |Λ| K |Λ|
+/// with K = |J| |M⁻¹| |M| |M⁻¹| |J|ᵀ. η = Λ(J u − J̇θ̇), u = M⁻¹h: |Λ| (|J| |M⁻¹| |M| |u| + K |η|). Ṁ = C + Cᵀ: |C| +
+/// |C|ᵀ.
 pub fn of(robot: &Robot, query: &Query, inputs: &[&[f64]], outputs: &[Vec<f64>]) -> Option<Vec<f64>> {
     let (model, name, n) = (&robot.model, query.declaration().name, robot.model.n());
     let matrix = |rows: usize, x: &[f64]| DMatrix::from_row_slice(rows, x.len() / rows.max(1), x).abs();

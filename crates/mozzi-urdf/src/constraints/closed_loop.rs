@@ -32,7 +32,7 @@ pub fn contents(at: &At, robot: &Description) -> Result<Contents, Wrong> {
     Ok(Contents { constraints, motors: driven_joints(&driven, robot)?, place_of_motors: driven.place })
 }
 
-/// Joints that become others, as `joint_name` and `joint_type` of the same length say.
+/// Joints whose type changes: the lists `joint_name` and `joint_type`, of the same length.
 pub fn retyped(at: &At, robot: &Description) -> Result<Vec<(usize, JointKind)>, Wrong> {
     let list = |key| if at.get(key).is_null() { Ok(Vec::new()) } else { at.get(key).list() };
     let (names, types) = (list("joint_name")?, list("joint_type")?);

@@ -164,7 +164,7 @@ fn editor<'a>(
     if reasons.is_empty() { Ok(editor) } else { Err(refused(reasons)) }
 }
 
-/// What differs between the robot of an edited text and the wanted one, beyond rounding.
+/// The differences between the robot of an edited text and the wanted one, beyond rounding.
 fn differences(found: &Description, wanted: &Description) -> Vec<String> {
     let mut reasons = unsupported(found, wanted);
     let mut compare = |name: String, found: &[f64], wanted: &[f64], least: f64| {

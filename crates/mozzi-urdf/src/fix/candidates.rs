@@ -1,4 +1,4 @@
-//! What an impossible or misfitting inertia was meant to be.
+//! Repairs of inertias that are impossible or do not fit the link's shape.
 
 use super::inertial::{Inertial, MOMENTS, Numbers, of_point};
 use super::{Proposal, Robot, twin};
@@ -171,7 +171,8 @@ fn all(inertial: &Inertial<'_>, old: SpatialInertia) -> Vec<Candidate> {
     found
 }
 
-/// The same round number three times is no measurement that units or columns could explain.
+/// True if all three moments are the same number of one digit and the products are 0: a placeholder, which no change of
+/// units or columns can repair.
 fn is_placeholder(numbers: &Numbers) -> bool {
     let [xx, xy, xz, yy, yz, zz] = numbers.moments;
     let digits = format!("{xx:e}");
@@ -187,7 +188,7 @@ fn shifted(x: f64, power: i32) -> f64 {
     shifted.unwrap_or(x)
 }
 
-/// Of two bodies that mirror each other the masses and the principal moments are the same.
+/// True for possible mirror images: mass, principal moments and ‖c‖ agree within 1 %.
 fn alike(a: SpatialInertia, b: SpatialInertia) -> bool {
     let (p, q) = (a.verdict().principal_moments, b.verdict().principal_moments);
     let near = |a: f64, b: f64| (a - b).abs() <= 0.01 * b.abs();
@@ -210,7 +211,7 @@ fn moved(old: SpatialInertia, new: SpatialInertia) -> f64 {
     a.as_flattened().iter().zip(b.as_flattened()).fold(0.0_f64, |m, (x, y)| m.max((x - y).abs())) / scale
 }
 
-/// What changed only by rounding keeps its digits.
+/// Restores the digits of numbers that changed only by rounding.
 fn keep_equal(old: &Numbers, new: &mut Numbers) {
     let scale = new.moments.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for (new, old) in new.moments.iter_mut().zip(old.moments) {

@@ -1,4 +1,4 @@
-//! What becomes of the mass matrix.
+//! The effect of repairs on the mass matrix.
 
 use super::Proposal;
 use crate::{Settings, parse_with};

@@ -1,4 +1,4 @@
-//! What a link's shape says about its inertia.
+//! Comparison of a link's inertia with its shape.
 
 use crate::geometry::hull::convex_hull;
 use crate::geometry::moments::{Filling, Moments, moments};
@@ -15,7 +15,8 @@ const MOST_BYTES: u64 = 64 << 20;
 const DENSEST: f64 = 25_000.0;
 /// Points on a circle.
 const AROUND: u32 = 24;
-/// Of a larger mesh, the points that are the farthest in as many directions are enough to compare with.
+/// Meshes with more points are reduced to the farthest points in this many directions, which is enough for a
+/// comparison.
 const DIRECTIONS: usize = 300;
 
 /// The points of the hull that matter.
@@ -44,9 +45,9 @@ impl Solid {
         Some(Solid { moments, low: bound(f64::min, f64::INFINITY), high: bound(f64::max, f64::NEG_INFINITY) })
     }
 
-    /// By how many powers of ten an inertia is away from the hull's, uniformly filled with the same mass: the worst of
-    /// its moments about the centre of mass, in the link's axes, and of what lies outside. Infinite if a moment is not
-    /// above 0.
+    /// The misfit of an inertia and the hull, uniformly filled with the same mass, in powers of ten. It is the largest
+    /// of three: |log₁₀| of the ratios of moments about the centre of mass, in the link's axes; an excessive density;
+    /// the distance of the centre of mass from the hull's box. Infinite if a moment is not above 0.
     pub fn misfit(&self, G: SpatialInertia) -> f64 {
         let (found, filled) = (G.about_center_of_mass(), self.moments.I * (G.mass / self.moments.size));
         let ratios = [(found.xx, filled.xx), (found.yy, filled.yy), (found.zz, filled.zz)];

@@ -59,7 +59,7 @@ impl<'a> Inertial<'a> {
         Numbers { mass: G.mass, center: G.center_of_mass().0, moments: [xx, xy, xz, yy, yz, zz] }
     }
 
-    /// Writes those numbers that differ, and says which.
+    /// Writes the numbers that differ, and lists them.
     pub fn write(&self, new: &Numbers) -> (Editor<'a>, String) {
         let (mut editor, mut said) = (Editor::new(self.tag.text), Vec::new());
         let old = &self.numbers;

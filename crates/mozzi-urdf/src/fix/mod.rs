@@ -1,8 +1,8 @@
 //! Repairs of a URDF's numbers, as proposals: none is made unless it is applied. Each has its reason and its effect on
 //! M.
 //!
-//! An inertia is doubted only if no body can have it, or if it is far from what the link's shape would have. What is
-//! proposed must be possible and must fit the shape. See [`proposals`].
+//! An inertia is doubted only if no body can have it, or if it is far from what the link's shape would have. A proposed
+//! inertia must be possible and must fit the shape. See [`proposals`].
 
 mod candidates;
 mod duplicate;
@@ -30,7 +30,7 @@ use std::path::Path;
 /// A change of a robot's text that would repair it.
 #[derive(Clone, Debug)]
 pub struct Proposal {
-    /// What is wrong, such as `power_of_ten`.
+    /// The kind of error, such as `power_of_ten`.
     pub code: &'static str,
     /// The element: "link `wrist`".
     pub subject: String,
@@ -40,7 +40,7 @@ pub struct Proposal {
     pub change: String,
     /// Why.
     pub reason: String,
-    /// What becomes of the mass matrix.
+    /// The effect on the mass matrix.
     pub effect: String,
     /// The link whose inertia changes, before and after.
     pub inertia: Option<(String, SpatialInertia, SpatialInertia)>,
@@ -54,7 +54,7 @@ impl fmt::Display for Proposal {
     }
 }
 
-/// What the repairs know of a robot: its XML, its description as far as it can be read, and the solids of its links.
+/// The input of the repairs: the robot's XML, the description as far as it can be read, and the solids of its links.
 struct Robot<'a> {
     root: Tag<'a>,
     document: &'a Document<'a>,
@@ -110,8 +110,8 @@ pub fn proposals(file_name: &str, text: &str, settings: &Settings) -> Result<Vec
     })
 }
 
-/// By how many powers of ten the inertia of each link with a mass is away from that of its shape, uniformly filled;
-/// links whose shapes cannot be read are left out. A possible inertia below 1 is left alone.
+/// The misfit of the inertia of each link with a mass to its shape, uniformly filled, in powers of ten; links whose
+/// shapes cannot be read are left out. A possible inertia below 1 is left alone.
 pub fn misfits(file_name: &str, text: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);

@@ -110,7 +110,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// With symbolic links followed, is it in one of these folders or in its package?
+    /// True if the file, with symbolic links followed, is in one of these folders or in its package.
     fn is_allowed(&self, own: &[PathBuf]) -> bool {
         let Ok(file) = self.path.canonicalize() else { return false };
         let of_package = self.package.as_ref().and_then(|(folder, is_of_ros)| {

@@ -71,7 +71,7 @@ fn ascii_stl(text: &str) -> Result<(), String> {
     if triangles > 0 && next.is_none() { Ok(()) } else { Err("it has no triangles, or ends within them".into()) }
 }
 
-/// Do the words of a line begin as expected, with three numbers in place of a 3?
+/// True if a line has the expected words, with three finite numbers in place of a 3.
 fn is_line<'t>(expected: &str, first: &'t str, rest: impl Iterator<Item = &'t str>) -> bool {
     let words: Vec<&str> = std::iter::once(first).chain(rest).collect();
     let (start, count) = expected.strip_suffix(" 3").map_or((expected, 0), |start| (start, 3));

@@ -1,5 +1,5 @@
 //! The shapes of links: `<visual>` and `<collision>` of URDF, `<geom>` of MJCF. They do not affect the dynamics, except
-//! as contact points if asked: [`contact_points`].
+//! as contact points on request: [`contact_points`].
 
 mod contact;
 mod files;
@@ -57,10 +57,10 @@ pub fn geometry(name_or_path: &str) -> Result<Geometry, LoadError> {
     geometry_with(name_or_path, &XacroArguments::default())
 }
 
-/// The same with xacro arguments.
+/// As [`geometry`], with xacro arguments.
 ///
 /// # Errors
-/// As there; [`LoadError::Refused`] if xacro cannot expand the file.
+/// As for [`geometry`]; [`LoadError::Refused`] if xacro cannot expand the file.
 pub fn geometry_with(name_or_path: &str, arguments: &XacroArguments) -> Result<Geometry, LoadError> {
     if let Some(text) = embedded::unless_file(name_or_path) {
         return Ok(parse(&format!("{name_or_path}.urdf"), text));
@@ -77,7 +77,7 @@ pub fn parse(file_name: &str, text: impl AsRef<[u8]>) -> Geometry {
     parse_with(file_name, text, &XacroArguments::default())
 }
 
-/// The same with xacro arguments; none if xacro cannot expand the text.
+/// As [`parse`], with xacro arguments; no shapes if xacro cannot expand the text.
 pub fn parse_with(file_name: &str, text: impl AsRef<[u8]>, arguments: &XacroArguments) -> Geometry {
     parse_in(None, file_name, text.as_ref(), arguments).unwrap_or_default()
 }

@@ -4,7 +4,7 @@ use super::hull::convex_hull;
 use mozzi::Vec3;
 use mozzi::linalg::Sym3;
 
-/// What is filled with mass, by MuJoCo's words.
+/// The part of a mesh that is filled with mass: MuJoCo's values of `inertia`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Filling {
     /// The convex hull.

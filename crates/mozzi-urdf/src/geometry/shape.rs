@@ -15,8 +15,8 @@ pub struct Shape {
     pub form: Form,
     /// Red, green, blue, opacity from 0 to 1, if the file gives them.
     pub color: Option<[f64; 4]>,
-    /// Do planes stop it? A URDF's `<collision>`; in MJCF a geom whose `contype` or `conaffinity` has the bit 1,
-    /// whether it is drawn or not.
+    /// True if it collides with planes: a URDF's `<collision>`; in MJCF a geom whose `contype` or `conaffinity` has the
+    /// bit 1, whether it is drawn or not.
     pub touches: bool,
     /// Its own coefficient of sliding friction, in MJCF.
     pub friction: Option<f64>,

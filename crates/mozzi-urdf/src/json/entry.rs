@@ -17,7 +17,7 @@ pub struct At<'v> {
     file: &'v File,
     /// The value; null if the file lacks it.
     pub value: &'v Value,
-    /// What the whole file describes, in messages.
+    /// The name of the whole in messages, such as "the robot".
     whole: &'static str,
     path: Vec<Step<'v>>,
 }

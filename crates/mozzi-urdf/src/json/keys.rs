@@ -66,13 +66,13 @@ impl Object {
         Object { required, optional: &[], children: &[] }
     }
 
-    /// The same object with these optional keys.
+    /// Sets the optional keys.
     #[must_use]
     pub const fn optional(self, optional: &'static [&'static str]) -> Self {
         Object { optional, ..self }
     }
 
-    /// The same object whose values of these keys are objects, or lists of them.
+    /// Sets the keys whose values are objects, or lists of objects.
     #[must_use]
     pub const fn children(self, children: &'static [(&'static str, Object)]) -> Self {
         Object { children, ..self }

@@ -100,7 +100,7 @@ fn compensated(model: &Model, parts: &[(String, f64)]) -> Result<Model, Error> {
     robot.build()?.with_gravity(model.gravity().0)
 }
 
-/// M at the robot's start, if an actuator asks for it.
+/// The factors of M at the robot's start, computed when the first actuator needs them.
 #[derive(Default)]
 struct Inertia(OnceCell<Option<Cholesky<f64, Dyn>>>);
 

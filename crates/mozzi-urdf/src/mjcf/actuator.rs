@@ -34,7 +34,7 @@ pub struct Actuator {
     pub force_range: Option<[f64; 2]>,
 }
 
-/// What moves a robot of MJCF.
+/// The actuators of an MJCF file, its controls, and its gravity compensation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Actuation {
     /// In the order of the file, which is that of MuJoCo's `ctrl`; None for one that is left out.

@@ -38,7 +38,7 @@ impl<'a> Item<'a> {
         self.element.attribute(name).or_else(|| self.inherited(name).last().cloned())
     }
 
-    /// Is the attribute given, by the element itself or its class?
+    /// True if the element itself or its class has the attribute.
     pub fn has(&self, name: &str) -> bool {
         self.value(name).is_some()
     }

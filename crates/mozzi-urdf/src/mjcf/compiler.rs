@@ -29,9 +29,9 @@ pub(crate) struct Compiler {
     pub bound_mass: f64,
     pub bound_inertia: f64,
     pub balance: bool,
-    /// Are solids fitted to the bounding boxes of meshes?
+    /// True if solids are fitted to the bounding boxes of meshes.
     pub fit_aabb: bool,
-    /// Are the folders of meshes' files dropped?
+    /// True if the folders in the names of mesh files are dropped.
     pub strips: bool,
     pub total_mass: Option<f64>,
 }

@@ -16,7 +16,7 @@ use std::rc::Rc;
 /// More copies of one <replicate>, or of those inside each other, are refused.
 const MOST_COPIES: usize = 10_000;
 
-/// What surrounds the elements of a body.
+/// The surroundings of an element of a body.
 #[derive(Clone)]
 pub(crate) struct Around {
     /// The frame, relative to the body's.
@@ -24,7 +24,7 @@ pub(crate) struct Around {
     /// The default class.
     pub class: Class,
     pub depth: usize,
-    /// What <replicate> adds to names.
+    /// The suffix that <replicate> adds to names.
     pub suffix: Rc<str>,
     /// The number of copies that this is one of.
     pub copies: usize,
@@ -40,7 +40,7 @@ impl Around {
 pub(crate) struct Inside<'a> {
     pub item: Item<'a>,
     pub T: SE3,
-    /// Of its contents.
+    /// The surroundings of its contents.
     pub around: Around,
 }
 

@@ -119,7 +119,7 @@ impl<'s> Coordinates<'s> {
         Some(State { time, theta: theta.as_slice().to_vec(), dtheta: dtheta.as_slice().to_vec() })
     }
 
-    /// Is it the neutral configuration?
+    /// True for the neutral configuration.
     pub fn is_neutral(&self, state: &State) -> bool {
         state.theta == self.model.neutral_configuration::<f64>()
     }

@@ -1,4 +1,4 @@
-//! What MJCF cannot say about a robot.
+//! The properties of a robot that MJCF cannot express.
 
 use super::write::{Plan, travel};
 use crate::written::names_of;

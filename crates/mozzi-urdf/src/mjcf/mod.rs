@@ -4,7 +4,7 @@
 //! [`load`](crate::load), [`parse`](crate::parse) and [`open`](crate::open) read them, too. The root element `<mujoco>`
 //! decides, not the file's name.
 //!
-//! # What is read
+//! # Supported elements
 //! Bodies, frames, `replicate` and sites with every way to write an orientation; free bodies of the world; hinges,
 //! slides and balls, several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`,
 //! `springref` and `springdamper`; inertias, given or computed from geoms, also from meshes; default classes;
@@ -19,9 +19,9 @@
 //!   axes, angular first. The world, and other bodies in it, are then not links. Any other free body is attached to the
 //!   world by a free joint with the same positions and velocities.
 //! - A ball has MuJoCo's quaternion, angular velocity and spring.
-//! - The inertia of a mesh (STL, OBJ, MSH, or vertices in the model) is that of its convex hull, of what its triangles
-//!   bound, of MuJoCo's older pyramids, or of the shell, as its `inertia` says; solids are fitted to meshes, and
-//!   `shellinertia` is computed, as in MuJoCo. Mesh files are relative to the model's.
+//! - The inertia of a mesh (STL, OBJ, MSH, or vertices in the model) is, according to its attribute `inertia`, that of
+//!   its convex hull, of the solid that its triangles bound, of MuJoCo's older pyramids, or of the shell; solids are
+//!   fitted to meshes, and `shellinertia` is computed, as in MuJoCo. Mesh files are relative to the model's.
 //! - Unnamed elements are named by their number in MuJoCo: `body3`, `joint1`.
 //! - Equalities are rigid here; MuJoCo's solver keeps them approximately: `solref`, `solimp` and `torquescale` are not
 //!   used. Anchor {a} is in body 1 and {b} in body 2, at the point that coincides with it in the file's own
@@ -31,7 +31,7 @@
 //!   joint has a `ref`, it is the state `qpos0`, and the robot starts there ([`mozzi::Model::start`]), as in MuJoCo.
 //!   Numbers of mimic joints are checked against their source joints', and not kept.
 //!
-//! # What is not read
+//! # Unsupported elements
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
 //!   flexible bodies, `attach` and `composite`, meshes whose inertia is needed and unknown.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.

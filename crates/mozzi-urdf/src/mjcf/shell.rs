@@ -19,8 +19,8 @@ pub(crate) fn area(solid: Solid) -> f64 {
     }
 }
 
-/// The surface's inertia at a mass. Of an ellipsoid it is that between it and one that is 1 µm larger in all
-/// directions, which is what MuJoCo computes.
+/// The surface's inertia at a mass. For an ellipsoid it is, as in MuJoCo, the inertia of the layer between it and an
+/// ellipsoid that is 1 µm larger in all directions.
 pub(crate) fn inertia(solid: Solid, mass: f64) -> SpatialInertia {
     // means of x², y², z² over the surface
     let [x, y, z] = match solid {

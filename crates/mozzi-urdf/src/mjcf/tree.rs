@@ -71,9 +71,9 @@ pub(crate) struct Rotor {
     pub name: Name,
     pub armature: f64,
     pub gears: Vec<Gear>,
-    /// Is it a `fixed` tendon, which has constant ratios?
+    /// True for a `fixed` tendon, which has constant ratios.
     pub is_fixed: bool,
-    /// Is it refused, for a reason that was reported?
+    /// True if it is refused; the reason was reported.
     pub is_refused: bool,
     pub is_limited: bool,
     pub place: Place,

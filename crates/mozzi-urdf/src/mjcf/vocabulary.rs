@@ -344,7 +344,7 @@ pub(crate) const KEY: Vocabulary = Vocabulary {
     listed: &["act", "ctrl", "mpos", "mquat", "plastic"],
     ..NOTHING
 };
-/// What is read of an actuator besides its law, and kept of its default class.
+/// Attributes of an actuator that are read in addition to its law, and kept of its default class.
 pub(crate) const ACTUATOR: Vocabulary = Vocabulary {
     attributes: &[
         "class",

@@ -68,7 +68,7 @@ impl<'d> Plan<'d> {
         Plan { d, below, base, links }
     }
 
-    /// Is it MuJoCo's world: a fixed base of this name without mass?
+    /// True for MuJoCo's world: a fixed, massless base named `world`.
     pub fn is_world(&self, link: &str) -> bool {
         let is_base = self.base.is_some_and(|base| base.name == link && base.inertia.mass == 0.0);
         link == "world" && is_base && self.d.base == Base::Fixed

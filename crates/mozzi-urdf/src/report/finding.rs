@@ -93,7 +93,7 @@ impl Findings {
         self.errors
     }
 
-    /// Are there enough errors to stop reading?
+    /// True if there are enough errors to stop reading.
     pub fn is_full(&self) -> bool {
         self.errors > MOST_FINDINGS
     }

@@ -1,4 +1,4 @@
-//! What is said about a file: findings, their places, consequences and remedies.
+//! Reports about a file: findings, their places, consequences and remedies.
 
 pub(crate) mod consequence;
 pub(crate) mod diagnostic;

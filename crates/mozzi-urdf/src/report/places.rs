@@ -91,7 +91,7 @@ impl Places {
         self.of(element).has_reported(attribute)
     }
 
-    /// Is a name or element missing, so that the tree cannot be checked?
+    /// True if a name or element is missing, so that the tree cannot be checked.
     pub fn tree_is_partial(&self) -> bool {
         let missing = |place: &Place| ["name", "parent", "child"].iter().any(|name| place.has_reported(name));
         self.is_partial || self.links.iter().chain(&self.joints).any(missing)

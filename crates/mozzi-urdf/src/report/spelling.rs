@@ -1,4 +1,4 @@
-//! Did you mean …?
+//! Suggestions for misspelled words.
 
 use mozzi::spelling::distance;
 
@@ -36,7 +36,7 @@ pub(crate) fn meant(word: &str) -> String {
     format!("did you mean `{word}`?")
 }
 
-/// The same for the known word nearest to an unknown one, if it is near enough for a misspelling.
+/// "did you mean `x`?" with the known word nearest to an unknown one, if it is near enough for a misspelling.
 pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(word, known).map(meant)
 }

@@ -3,7 +3,7 @@
 use mozzi::model::description::{Link, NamedState};
 use mozzi::{Base, Description};
 
-/// Is the base SDFormat's world: a link of this name without mass?
+/// True if the base is SDFormat's world: a fixed, massless link named `world`.
 pub(super) fn has_world(d: &Description) -> bool {
     let base = base_link(d);
     d.base == Base::Fixed && base.is_some_and(|link| link.name == "world" && link.inertia.mass == 0.0)

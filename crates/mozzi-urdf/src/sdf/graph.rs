@@ -39,7 +39,8 @@ pub(crate) struct Node<'a> {
     pub T: SE3,
     /// The name of the frame that `T` is relative to; the scope's frame if there is none.
     pub relative_to: Option<Value<'a>>,
-    /// What carries it: `attached_to` of a frame, the child of a joint, the canonical link of a model.
+    /// The name of the element that carries it: `attached_to` of a frame, the child of a joint, the canonical link of a
+    /// model.
     pub carrier: Option<Value<'a>>,
     /// The frame of a model that `T` is for, and that model's scope.
     pub placement: Option<(Value<'a>, Rc<Scope>)>,
@@ -103,7 +104,7 @@ impl<'a> Graph<'a> {
         }
     }
 
-    /// The same; reports an unknown name at its place.
+    /// As [`find`](Self::find); reports an unknown name at its place.
     pub fn found(&self, scope: &Scope, value: &Value, subject: &str, cx: &mut Context) -> Option<usize> {
         let found = self.find(scope, value.text);
         if found.is_none() {

@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
         node
     }
 
-    /// Tells a model its first link.
+    /// Records the first link of a model.
     pub fn first_link(&mut self, model: usize, link: usize) {
         let node = self.graph.node(model);
         if node.what == What::Model(None) {
@@ -106,7 +106,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Is there a decay other than 0?
+/// True if a rate of `velocity_decay` is not 0.
 fn decays(part: &Part, cx: &mut Context) -> bool {
     let Some(decay) = part.child("velocity_decay") else { return false };
     decay.elements().any(|rate| decay.vector::<1>(rate.name(), &rate.content(), cx).is_some_and(|[x]| x != 0.0))

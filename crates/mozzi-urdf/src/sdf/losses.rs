@@ -1,4 +1,4 @@
-//! What SDFormat cannot say about a robot.
+//! The properties of a robot that SDFormat cannot express.
 
 use super::base::{base_link, has_world, start_pose};
 use crate::urdf::write::ball_constraint;

@@ -3,11 +3,11 @@
 //! [`load`](crate::load), [`parse`](crate::parse) and [`open`](crate::open) read them, too. The root element `<sdf>`
 //! decides, not the file's name. [`write()`] makes such a text.
 //!
-//! # What is read
+//! # Supported elements
 //! Models, also inside models and from files that are included; links and their inertias; frames; poses with
 //! `relative_to`, `rotation_format` and `degrees`, `placement_frame`, `expressed_in` and the older
 //! `use_parent_model_frame`; joints of the types fixed, revolute, continuous, prismatic, screw, ball, universal and
-//! revolute2, with limits, damping, friction, spring, `initial_position` and `<mimic>`; a world's gravity. Of Drake:
+//! revolute2, with limits, damping, friction, spring, `initial_position` and `<mimic>`; a world's gravity. From Drake:
 //! the planar `<drake:joint>`, rotor inertia and gear ratio, `<drake:mimic>`, `<drake:ball_constraint>`.
 //!
 //! - A model is free in SDFormat, unless joints fix it to the world: then the base is the link `world`. A fixed joint
@@ -98,7 +98,7 @@ pub(crate) fn read(
     result
 }
 
-/// What is read of all models, before names are looked up.
+/// The elements of all models, before names are looked up.
 struct Reader<'a> {
     pages: &'a Pages<'a>,
     /// The place of each `<include>`, and the page of its file.
@@ -108,7 +108,7 @@ struct Reader<'a> {
     joints: Vec<joint::Joint<'a>>,
     frames: Vec<link::Frame>,
     closures: Vec<assemble::Closure<'a>>,
-    /// Of the included file that is being read.
+    /// The depth of inclusion of the file that is being read.
     depth: usize,
     /// The number of models that were included.
     instances: usize,

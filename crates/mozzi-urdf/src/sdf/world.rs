@@ -60,7 +60,7 @@ impl<'a> Reader<'a> {
         self.assemble(name.unwrap_or_else(|| "sdf".to_string()), gravity, places, cx)
     }
 
-    /// Is it a part of the robot? A static model of a world is not, nor an included light.
+    /// True if a model is a part of the robot; false for static models of a world and for included lights.
     fn moves(&self, model: &Element<'a>, cx: &mut Context) -> bool {
         let is_set = |element: &Element| {
             let flag = element.elements().find(|child| child.name() == "static");

@@ -44,7 +44,7 @@ pub(crate) fn to_text(bytes: &[u8]) -> Result<&str, (&str, Finding)> {
     })
 }
 
-/// The same; an error is added to the findings.
+/// As [`to_text`]; an error is added to the findings, and the part of the text that can be shown is returned.
 pub(crate) fn read<'b>(bytes: &'b [u8], findings: &mut Findings) -> &'b str {
     match to_text(bytes) {
         Ok(text) => text,

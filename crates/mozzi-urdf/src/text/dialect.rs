@@ -53,7 +53,7 @@ impl Dialect {
     }
 }
 
-/// Does this text begin with the word `sdf`, whole?
+/// True if the text begins with the whole word `sdf`.
 fn is_sdf(text: &str) -> bool {
     text.strip_prefix("sdf")
         .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_whitespace() || c == '>' || c == '/'))

@@ -44,7 +44,7 @@ impl<'a> Element<'a> {
         Some(Element { node: pages.root_of(page)?, pages, page, subject: subject.to_string() })
     }
 
-    /// The same element with another name in messages.
+    /// Changes the name of the element in messages.
     pub fn called(&self, subject: impl Into<String>) -> Self {
         Element { subject: subject.into(), ..self.clone() }
     }
@@ -229,7 +229,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Is it the transposed entry, such as `iyx` of `ixy`, with a different number?
+    /// True if `name` is the transposed entry of `near`, such as `iyx` of `ixy`, with a different number.
     fn contradicts(&self, name: &str, near: &str) -> bool {
         let transposed: String = ["i", near.get(2..3).unwrap_or_default(), near.get(1..2).unwrap_or_default()].concat();
         let value = |name: &str| self.attribute(name).map(|value| numbers::<1>(value.text).ok());
@@ -300,7 +300,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Does the name have a prefix of a namespace?
+    /// True if the name has a namespace prefix.
     pub fn has_prefix(&self) -> bool {
         self.written_name().contains(':')
     }

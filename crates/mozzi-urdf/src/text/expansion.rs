@@ -67,9 +67,9 @@ pub fn expanded(
     Ok(source.expansion.map(|expansion| expansion.text.clone()))
 }
 
-/// What the expansion of a xacro text takes from this machine: variables of the environment, and files that lie neither
-/// next to the robot's file nor in a package (a folder with package.xml, or one that is given). A text that is passed
-/// on may contain them.
+/// The inputs from this machine that the expansion of a xacro text used: environment variables, and files that are
+/// neither next to the robot's file nor in a package (a folder with package.xml, or one that is given). If the text is
+/// passed on, it may contain them.
 ///
 /// # Errors
 /// As [`expanded`].

@@ -34,13 +34,13 @@ impl Source {
         Source { name, text, base: 0, original, inserted, is_shown: true, expansion: None }
     }
 
-    /// The same file, parsed as another text in which all places are the same.
+    /// Replaces the parsed text by one in which all places are the same.
     pub fn replaced(self, text: String) -> Self {
         let original = self.original.or(Some(self.text));
         Source { text: text.into(), original, ..self }
     }
 
-    /// The same file, parsed with something inserted. All insertions are at one place.
+    /// Inserts `what` into the parsed text. All insertions are at one place.
     pub fn with_insertion(&self, at: usize, what: &str) -> Self {
         let text = format!("{}{what}{}", &self.text[..at], &self.text[at..]);
         let inserted = (at, self.inserted.1 + what.len());
@@ -67,7 +67,7 @@ impl Source {
         place(span.start)..place(span.end)
     }
 
-    /// The same source, placed after other texts.
+    /// Sets the place of its first byte among all texts.
     pub fn at(self, base: usize) -> Self {
         Source { base, ..self }
     }

@@ -43,7 +43,7 @@ pub(crate) fn parse(source: &Source, dialect: Dialect) -> Result<Document<'_>, F
     parse_text(source, dialect).map_err(|finding| Finding { span: source.place(finding.span.clone()), ..finding })
 }
 
-/// The same, with places counted from the text's beginning.
+/// As [`parse`], with places counted from the beginning of this text.
 fn parse_text(source: &Source, dialect: Dialect) -> Result<Document<'_>, Finding> {
     let unfinished = scan(&source.text)?;
     let document = document(&source.text).map_err(|error| explain(source, dialect, error, unfinished))?;

@@ -18,13 +18,13 @@ const READ: [&str; 13] = [
 const EXPRESSIONS: [&str; 9] =
     ["${", "$(arg ", "$(find ", "$(env ", "$(optenv ", "$(eval ", "$(anon ", "$(dirname)", "$(cwd)"];
 
-/// What was expected instead.
+/// The end of messages: the expected file.
 const EXPECTED: &str = "expected a file that xacro has expanded";
 
 /// The most arguments listed in a suggested command.
 const MOST_ARGUMENTS: usize = 8;
 
-/// Does the text contain an expression that xacro evaluates?
+/// True if the text contains an expression that xacro evaluates.
 pub(crate) fn has_expression(text: &str) -> bool {
     EXPRESSIONS.iter().any(|start| text.contains(start))
 }
@@ -76,14 +76,14 @@ fn command(document: &Document, file: &str, dialect: Dialect) -> String {
     )
 }
 
-/// Must the file be expanded before it is read? Yes if its name says so, or if its root declares xacro's namespace and
-/// something is left to expand.
+/// True if the file must be expanded before it is read: its name ends in `.xacro`, or `parse` finds it
+/// [unexpanded](is_unexpanded).
 pub(crate) fn is_program(text: &str, file: &str, parse: impl FnOnce() -> Option<bool>) -> bool {
     let is_named = file.ends_with(".xacro") && text.contains('<');
     is_named || text.contains("xacro") && parse() == Some(true)
 }
 
-/// Does the root declare the namespace, and is something left to expand?
+/// True if the root declares xacro's namespace and something is left to expand.
 pub(crate) fn is_unexpanded(document: &Document, dialect: Dialect) -> bool {
     let declares = document
         .root_element()

@@ -1,10 +1,10 @@
-//! The same robot, with only the elements that URDF has.
+//! Rewrites a robot with only the elements that URDF has.
 
 use crate::urdf::write::free;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 
-/// The same robot for [`write`](crate::write): every further frame is a link without mass on a fixed joint, and a
+/// Rewrites a robot for [`write`](crate::write): every further frame is a link without mass on a fixed joint, and a
 /// revolute joint whose axis misses the child's frame turns a new link on its axis, to which the child is fixed. Joints
 /// keep their names and order; the motion of all links is the same.
 pub fn expressible(description: &Description) -> Description {

@@ -17,7 +17,7 @@ const DRAKE: [&str; 6] = [
     "drake:collision_filter_group",
 ];
 
-/// The same, in SDFormat alone.
+/// Further elements of Drake that are read, in SDFormat only.
 const DRAKE_IN_SDF: [&str; 4] = ["drake:parent", "drake:child", "drake:damping", "drake:mimic"];
 
 /// Elements of Drake that act on the robot, and their effect.
@@ -53,7 +53,7 @@ pub(crate) fn element(child: &Element, parent: &Element, cx: &mut Context) {
     }
 }
 
-/// The same for an attribute, by its name and place.
+/// Reports an attribute with a prefix, unless it is read elsewhere or does not matter.
 pub(crate) fn attribute(on: &Element, written: &str, span: std::ops::Range<usize>, cx: &mut Context) {
     if written == "drake:acceleration" || is_harmless(written) {
         return;

@@ -25,7 +25,7 @@ pub(crate) struct Read {
 pub(crate) enum Freedoms {
     /// As given by its kind.
     OneOrNone,
-    /// By a series of joints of one axis.
+    /// As a series of joints of one axis.
     Series(Vec<Part>),
     /// About a point.
     Ball,

@@ -19,8 +19,8 @@ use crate::workspace::{ConstraintMemory, MOST_ROWS, Workspace};
 const STEPS: usize = 3;
 
 pass! {
-/// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. The workspace holds T_{i,i−1}(θ), the
-/// memory A.
+/// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. Requires T_{i,i−1}(θ) in the workspace and
+/// A in the memory.
 pub fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     workspace: &mut Workspace<S>,

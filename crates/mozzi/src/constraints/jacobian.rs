@@ -38,7 +38,7 @@ pub fn constraint_jacobian<S: Scalar + From<C>, C: Scalar>(
 }
 
 pass! {
-/// The same; the workspace holds T_{i,i−1}(θ).
+/// As [`constraint_jacobian`]; requires T_{i,i−1}(θ) in the workspace.
 pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

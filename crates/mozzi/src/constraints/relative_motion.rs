@@ -46,8 +46,8 @@ impl<S: Scalar> Side<S> {
 /// The motion of {b} relative to {a}. Each anchor is followed up to the link that carries both, so that link's own
 /// motion does not enter.
 ///
-/// `base` is the pose of the base, and the workspace holds T_{i,i−1}(θ). Afterwards its 𝒱 holds, for the slots on the
-/// [`Way`] of the anchors, the columns of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
+/// `base` is the pose of the base, and T_{i,i−1}(θ) is required in the workspace. Afterwards its 𝒱 holds, for the slots
+/// on the [`Way`] of the anchors, the columns of the Jacobian, (∂ω, ∂ṗ)/∂θ̇_j, in parts.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn relative_motion<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,

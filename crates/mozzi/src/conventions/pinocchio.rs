@@ -230,7 +230,7 @@ fn swap_yy_and_xz(mut parameters: [f64; 10]) -> [f64; 10] {
     parameters
 }
 
-/// Is it a revolute joint without position limits?
+/// True for a revolute joint without position limits.
 fn turns_without_limits(joint: &Joint) -> bool {
     joint.limits.position.is_none() && joint.kind.name() == "revolute"
 }

@@ -18,7 +18,7 @@ pub(super) struct BaseRates<S> {
 }
 
 impl<S: Scalar> BaseRates<S> {
-    /// By θ and by θ̇, for ∂τ: the axes move with {s}.
+    /// The rates for ∂τ/∂θ and for ∂τ/∂θ̇: the axes move with {s}.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn of_derivatives<C: Scalar>(
         model: &Model<C>,

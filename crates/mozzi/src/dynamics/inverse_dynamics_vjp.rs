@@ -40,7 +40,7 @@ pub fn inverse_dynamics_vjp<S: Scalar + From<C>, C: Scalar>(
 }
 
 pass! {
-/// The same; the workspace holds T_{i,i−1}(θ).
+/// As [`inverse_dynamics_vjp`]; requires T_{i,i−1}(θ) in the workspace.
 pub(super) fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

@@ -77,7 +77,8 @@ pub fn momentum_matrix<S: Scalar + From<C>, C: Scalar>(
 }
 
 pass! {
-/// The columns of the momentum matrix in a frame {s}, seen from the base; the workspace holds the composite inertias.
+/// The columns of the momentum matrix in a frame {s}, seen from the base; requires the composite inertias in the
+/// workspace.
 pub(super) fn columns<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, T_bs: SE3<S>, workspace: &mut Workspace<S>, A: &mut [Wrench<S>]) {
     assert!(A.len() == model.n(), "A has {} columns, expected n = {}", A.len(), model.n());
     let Workspace { recursion: Recursion { T, .. }, composite: Composite { G: G_c, .. }, .. } = workspace;

@@ -61,8 +61,8 @@ pub fn inverse_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
     from_transforms(model, [theta, dtheta, ddtheta, x], environment, workspace, outputs);
 }
 
-/// The gradient of xᵀθ̈ by the robot, for a constant x; as that of
-/// [xᵀτ](inverse_dynamics_parameter_vjp), at −M⁻¹x. `memory` is for 2 n numbers.
+/// The gradient of xᵀθ̈ with respect to the robot's constants, for a constant x. It is the gradient of
+/// [yᵀτ](inverse_dynamics_parameter_vjp) at y = −M⁻¹x. `memory` is for 2 n numbers.
 ///
 /// Cost O(n); O(n · depth²) if [`Model::solves_by_mass_matrix`]. No allocation.
 ///
@@ -89,14 +89,15 @@ pub fn forward_dynamics_parameter_vjp<S: Scalar + From<C>, C: Scalar>(
     from_transforms(model, [theta, dtheta, ddtheta, y], environment, workspace, outputs);
 }
 
-/// The gradient by a small motion of all links beyond, in the coordinates of the twists: those of what carries them.
+/// The gradient with respect to a small motion of all links beyond, in the coordinates of `[V, dV, X]`, the twists of
+/// the body that carries them.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn of_all_beyond<S: Scalar>([V, dV, X]: [Twist<S>; 3], Q: Wrench<S>, R: Vec3<S>, F: Wrench<S>) -> Wrench<S> {
     BaseRates { X: dV, Y: Some(V), sigma: S::zero() }.dot(Q, R) + X.ad().transpose() * F
 }
 
 pass! {
-/// The workspace holds T_{i,i−1}(θ).
+/// Requires T_{i,i−1}(θ) in the workspace.
 fn from_transforms<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, inputs: [&[S]; 4],
     environment: &Environment<S>, workspace: &mut Workspace<S>, products: [&mut [S]; 4],

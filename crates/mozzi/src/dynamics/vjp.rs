@@ -52,8 +52,9 @@ pub(super) fn of_base<S: Scalar, C: Scalar>(model: &Model<C>, x: &[S]) -> Twist<
 }
 
 pass! {
-/// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. The workspace holds what the outward pass along X leaves:
-/// T_{i,i−1}, the rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's coordinates.
+/// Inward: adds the products to `[by θ, by θ̇, by θ̈]`. Requires the results of the outward pass along X in the
+/// workspace: T_{i,i−1}, the rates of the axes, 𝓕, X, Q and R of each link; `X_s` is how {s} moves, in the base's
+/// coordinates.
 pub(super) fn add_products<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     theta: &[S],

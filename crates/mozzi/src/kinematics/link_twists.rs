@@ -7,8 +7,8 @@ use crate::spatial::Twist;
 use crate::workspace::{Recursion, Workspace};
 
 pass! {
-/// `workspace.recursion.V[i]` = 𝒱_i of every link in its own coordinates, {s} moving with `V_s`; the workspace holds
-/// T_{i,i−1}(θ).
+/// `workspace.recursion.V[i]` = 𝒱_i of every link in its own coordinates, {s} moving with `V_s`; requires T_{i,i−1}(θ)
+/// in the workspace.
 pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], V_s: Twist<S>, workspace: &mut Workspace<S>,
 ) {

@@ -46,7 +46,7 @@ impl<S: Scalar> Wrench<S> {
         Wrench { m: Vec3([a, b, c]), f: Vec3([x, y, z]) }
     }
 
-    /// The same wrench, or momentum, about a point p of its frame instead of the origin: (m − p × f, f).
+    /// This wrench or momentum, with its moment about a point p of its frame instead of the origin: (m − p × f, f).
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn about(self, p: Vec3<S>) -> Self {
         Wrench { m: self.f.cross_add(p, self.m), f: self.f }

@@ -37,7 +37,8 @@ pub(crate) fn solve_transposed_all<S: Scalar>(pattern: &Pattern, L: &[S], b: &mu
     solve_transposed(pattern, L, b, (0..pattern.len()).rev());
 }
 
-/// The same if b is zero outside these rows, listed from the last; with each row the list must contain its ancestors.
+/// Overwrites b with y, where Lᵀy = b and b is zero outside `rows`. Rows are in descending order, each with its
+/// ancestors.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn solve_transposed<S: Scalar>(pattern: &Pattern, L: &[S], b: &mut [S], rows: impl Iterator<Item = usize>) {
     let n = pattern.len();

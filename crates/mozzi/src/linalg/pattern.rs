@@ -21,7 +21,7 @@ impl Pattern {
         Self::coupled(base, n, links, core::iter::empty::<[usize; 0]>())
     }
 
-    /// The same with further lists of rows; the rows of each list are all coupled with each other.
+    /// As [`new`](Self::new), with groups of mutually coupled rows in addition.
     pub(crate) fn coupled<L: IntoIterator<Item = usize>>(
         base: usize,
         n: usize,

@@ -43,7 +43,7 @@ impl<C: Scalar> Model<C> {
         self.base
     }
 
-    /// Is the base floating?
+    /// True if the base is floating.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn is_floating(&self) -> bool {
         self.base == Base::Floating

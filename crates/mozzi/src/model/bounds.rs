@@ -15,7 +15,7 @@ pub struct Bounds {
     pub places: Vec<Place>,
     /// Lowest and highest values, rad or m.
     pub joints: Vec<[f64; 2]>,
-    /// Does the joint turn?
+    /// True if the values are angles (rad); false for prismatic joints (m).
     pub turns: Vec<bool>,
 }
 

@@ -258,7 +258,7 @@ fn forks<C>(links: &[Link<C>]) -> Vec<bool> {
     forks
 }
 
-/// Is the mean number of links between a link and the base above `mean`?
+/// True if the mean number of links between a link and the base is above `mean`.
 fn mean_depth_exceeds<C>(mean: usize, links: &[Link<C>]) -> bool {
     let mut depths = vec![0];
     for link in links {

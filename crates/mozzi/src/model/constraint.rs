@@ -9,11 +9,11 @@ use alloc::string::String;
 pub struct Constraint<C = f64> {
     /// Unique among constraints.
     pub name: String,
-    /// What it constrains.
+    /// The constrained motion.
     pub kind: ConstraintKind<C>,
 }
 
-/// What a constraint constrains.
+/// The motion that a constraint restricts.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConstraintKind<C = f64> {
     /// The motion of anchor {b} relative to anchor {a}. All rows are in the axes of {a}.
@@ -179,7 +179,7 @@ impl<C> Constraint<C> {
 }
 
 impl<C: Real> Constraint<C> {
-    /// The same constraint with another number type.
+    /// A copy with all numbers converted by `f`.
     pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Constraint<U> {
         let anchor = |anchor: &Anchor<C>| Anchor { frame: anchor.frame.clone(), T: anchor.T.map(f) };
         let kind = match &self.kind {

@@ -14,7 +14,7 @@ pub struct ContactPoint {
     pub frame: FrameId,
     /// The point, or the centre of the rounding, in the frame, m.
     pub center: Vec3,
-    /// What is around the centre.
+    /// The shape around the centre.
     pub support: Support,
     /// The coefficient of friction μ, at least 0.
     pub mu: f64,

@@ -232,13 +232,13 @@ impl Description {
         }
     }
 
-    /// The same robot with a floating base.
+    /// Makes the base floating.
     pub fn floating(mut self) -> Self {
         self.base = Base::Floating;
         self
     }
 
-    /// The same robot under another gravity, in {s} coordinates, m/s².
+    /// Sets the gravity, in {s} coordinates, m/s².
     pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
         self.gravity = gravity;
         self
@@ -282,7 +282,7 @@ pub struct Source<C = f64> {
 }
 
 impl<C: Real> Description<C> {
-    /// The same robot with another number type.
+    /// A copy with all numbers converted by `f`.
     pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Description<U> {
         let joint = |joint: &Joint<C>| Joint {
             name: joint.name.clone(),

@@ -9,7 +9,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 impl Model<f64> {
-    /// The same robot with a payload, whose inertia is given in a frame's coordinates.
+    /// A copy of the robot with a payload fixed to a frame; its spatial inertia is in the frame's coordinates.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the numbers are not finite.
@@ -20,7 +20,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with a further frame at `T` relative to an existing frame, optionally as the end effector.
+    /// A copy of the robot with an additional frame at `T` relative to an existing frame.
     ///
     /// # Errors
     /// [`Error::Invalid`] when the name is taken.
@@ -31,7 +31,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with further constraints, such as closed loops or pinned feet. See [`constraints`].
+    /// A copy of the robot with additional constraints, such as closed loops or pinned feet. See [`constraints`].
     ///
     /// # Errors
     /// [`Error::Invalid`] for a name that is taken, an anchor that does not exist, anchors that are fixed to each
@@ -44,21 +44,21 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot without constraints: the tree.
+    /// A copy of the robot without constraints: the tree.
     pub fn without_constraints(&self) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         robot.constraints.clear();
         robot.build()
     }
 
-    /// The same robot with this frame as its end effector.
+    /// A copy of the robot with this frame as its end effector.
     pub fn with_end_effector(&self, frame: FrameId) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         robot.end_effector = Some(self.frame_name(frame).to_string());
         robot.build()
     }
 
-    /// The same robot under another gravity, in {s} coordinates, m/s².
+    /// A copy of the robot with this gravity, in {s} coordinates, m/s².
     ///
     /// # Errors
     /// [`Error::Invalid`] when the numbers are not finite.
@@ -68,8 +68,8 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with its base fixed or floating. Named states keep the joints' numbers; if the base was fixed,
-    /// they place it at {s}, at rest.
+    /// A copy of the robot with a fixed or a floating base. Named states keep the joints' numbers; if the base was
+    /// fixed, they place it at {s}, at rest.
     ///
     /// # Errors
     /// Only those that the model had before.
@@ -82,7 +82,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with a named state added, or replaced if the name exists.
+    /// A copy of the robot in which a named state is added, or replaced if the name exists.
     ///
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::Invalid`] when the numbers are not finite, or a quaternion is not of length 1.
@@ -95,7 +95,7 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with this named state as its start.
+    /// A copy of the robot with this named state as its start.
     ///
     /// # Errors
     /// [`Error::NoSuchState`].
@@ -106,8 +106,8 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// The same robot with joints locked at these positions, and their mimic joints with them. Named states keep the
-    /// other joints.
+    /// A copy of the robot with joints locked at these positions (rad or m), and their mimic joints with them. Named
+    /// states keep the other joints.
     ///
     /// # Errors
     /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint, a fixed, ball or free joint, or a position
@@ -244,7 +244,7 @@ impl Model<f64> {
         .build()
     }
 
-    /// Is this link, or the link of this frame, among these?
+    /// True if the link or frame of this name is on one of these links.
     fn is_on(&self, name: &str, links: &BTreeSet<usize>) -> bool {
         self.frame(name).is_ok_and(|frame| links.contains(&self.link_of(frame).0))
     }

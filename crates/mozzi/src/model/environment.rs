@@ -36,7 +36,7 @@ impl<S: Scalar> Environment<'_, S> {
         Environment { gravity, base_twist: Twist::zero(), base_acceleration: Twist::zero(), applied: &[] }
     }
 
-    /// The same environment with another number type, with the wrenches stored in `applied`.
+    /// A copy with all numbers converted by `f`; the wrenches are stored in `applied`, which is cleared first.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn map<'a, U>(
         &self,

@@ -22,7 +22,7 @@ pub enum Error {
     Unreachable {
         /// The constraint that is violated most.
         constraint: String,
-        /// By how much, rad or m, or their rates.
+        /// Its violation, rad or m, or their rates.
         residual: f64,
         /// The configuration or state that was searched for.
         what: &'static str,
@@ -44,7 +44,7 @@ pub enum Error {
         what: &'static str,
         /// Its length.
         found: usize,
-        /// What the model needs.
+        /// The length that the model requires.
         expected: usize,
     },
     /// No frame has this name.

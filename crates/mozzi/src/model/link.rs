@@ -41,7 +41,8 @@ pub(crate) struct Link<C> {
     pub A: JointAxis<C>,
     /// How θ moves it.
     pub motion: Motion,
-    /// Is this the joint's last axis, whose link is not massless?
+    /// True for the last axis of a joint, which carries the link's inertia; the links of the axes before it are
+    /// massless.
     pub is_last: bool,
     /// M_{i,i−1}: the parent's frame relative to this one when the joint is at 0; for the first axis of a ball or a
     /// free joint, relative to the link's frame.
@@ -87,8 +88,8 @@ impl<'m, C, S> Lifted<'m, C, S> {
         Lifted { link, motion: link.motion, number: PhantomData }
     }
 
-    /// The same. If all joints of the model have one axis, the code for other joints is left out at compile time; it
-    /// would cost 5 %.
+    /// With `ONE_AXIS`, which requires that all joints of the model have one axis, the compiler drops the code for ball
+    /// and free joints (5 % faster).
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn among<const ONE_AXIS: bool>(self) -> Self {
         if ONE_AXIS { Lifted { motion: Motion::Screw, ..self } } else { self }
@@ -165,7 +166,7 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         self.screw().sin_cos(self.own(theta))
     }
 
-    /// Is it the one axis of its joint?
+    /// True for a joint of one axis.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn has_one_axis(&self) -> bool {
         let is_one = self.motion == Motion::Screw;
@@ -175,7 +176,7 @@ impl<C: Scalar, S: Scalar + From<C>> Lifted<'_, C, S> {
         is_one
     }
 
-    /// Is it a further axis of the joint whose first axes are its ancestors'?
+    /// True for every axis of a ball or a free joint except the first.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn is_next(&self) -> bool {
         self.motion == Motion::Next

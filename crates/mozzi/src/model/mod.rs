@@ -114,16 +114,16 @@ pub(crate) struct Structure {
     /// Candidates, if the end effector must be named.
     pub leaves: Vec<FrameId>,
     pub pattern: Pattern,
-    /// Is there a mimic joint?
+    /// True if the robot has a mimic joint.
     pub has_mimic_joints: bool,
     /// For each slot the first slot of the links that a joint and its mimic joints on the same link move, 0 for a joint
     /// that moves a link alone; empty without mimic joints, and if one and its source joint are on different links.
     pub siblings: Vec<usize>,
     /// The first index in θ̇ of each free joint.
     pub free: Vec<usize>,
-    /// Are the joints uncoupled, and the limbs so long that articulated bodies give ∂θ̈ sooner?
+    /// True if no joints are coupled and the limbs are so long that ∂θ̈ is faster by articulated bodies.
     pub has_long_limbs: bool,
-    /// Does another limb branch off from the link of a slot?
+    /// For each slot: true if a link other than that of the next slot is attached to its link.
     pub forks: Vec<bool>,
     /// No joint is a ball or free.
     pub of_one_axis: bool,
@@ -185,7 +185,7 @@ impl<C: Scalar> Model<C> {
         self.moving_slots().count()
     }
 
-    /// Are the axes of these slots, the inner one first, of one ball or free joint?
+    /// True if these slots, inner ≤ outer, are axes of one ball or free joint.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn is_one_joint(&self, inner: usize, outer: usize) -> bool {
         // the axes of one joint are consecutive: each but the first is a next one
@@ -208,8 +208,7 @@ impl<C: Scalar> Model<C> {
         self.solves_by_mass_matrix
     }
 
-    /// The same robot, whose forward dynamics factors the mass matrix: as machine code of a small robot, this can be
-    /// less work.
+    /// Makes forward dynamics factor the mass matrix; in machine code for a small robot this can need fewer operations.
     pub fn solving_by_mass_matrix(self) -> Self {
         Model { solves_by_mass_matrix: true, ..self }
     }
@@ -279,7 +278,7 @@ impl<C: Scalar> Model<C> {
         self.sources().nth(joint)
     }
 
-    /// The same robot with constants of another type: `model.map(f32::from_f64)`, `model.map(Dual::constant)`.
+    /// A copy with all constants converted by `f`: `model.map(f32::from_f64)`, `model.map(Dual::constant)`.
     pub fn map<U>(&self, f: impl Fn(C) -> U + Copy) -> Model<U> {
         let list = |constants: &[C]| constants.iter().map(|&c| f(c)).collect();
         Model {

@@ -66,8 +66,8 @@ impl<C: Scalar> Model<C> {
         bodies.chain(joints).chain(rotors).collect()
     }
 
-    /// The same robot with other [`parameters`](Self::parameters), possibly of another number type. Geometry, frames,
-    /// couplings and the springs' energy at θ = 0 do not change.
+    /// A copy of the robot with these [`parameters`](Self::parameters), possibly of another number type. Geometry,
+    /// frames, couplings and the springs' energy at θ = 0 do not change.
     ///
     /// # Panics
     /// When there are not [`parameter_count`](Self::parameter_count) of them.

@@ -1,4 +1,4 @@
-//! What is wrong with a description.
+//! Errors and warnings about a description.
 
 use alloc::string::String;
 use core::fmt;
@@ -44,7 +44,7 @@ pub struct Problem {
     pub subject: String,
     /// The attribute of the element, such as `parent` or `inertia`.
     pub attribute: &'static str,
-    /// What was found, and what was expected.
+    /// The message: the value found, and the values expected.
     pub message: String,
 }
 

@@ -1,4 +1,4 @@
-//! The same robot with fewer nonzero constants, for recordings of its dynamics.
+//! Models with fewer nonzero constants and the same dynamics, for recordings.
 
 use super::{Model, Motion};
 use crate::linalg::{Sym3, Vec3};

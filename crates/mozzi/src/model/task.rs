@@ -117,7 +117,7 @@ fn singular_values<S: Scalar + Into<f64>>(J: &[S], rows: usize, n: usize) -> Vec
 }
 
 impl<S: Scalar + Into<f64>> TaskMemory<S> {
-    /// Are the rows dependent? They are if the smallest singular value of J is below 10⁻¹² of the largest, or a pivot
+    /// True if the rows are dependent: the smallest singular value of J is at most 10⁻¹² of the largest, or a pivot is
     /// not positive. No allocation.
     pub(crate) fn is_singular(&self, n: usize) -> bool {
         let (k, sigma) = (self.pivots.len(), singular_values(&self.J, self.pivots.len(), n));

@@ -176,7 +176,7 @@ impl<C: Scalar> Own<C> {
 }
 
 impl<C: Scalar> Closure<C> {
-    /// The same with another number type.
+    /// Converts its number by `f`.
     pub(crate) fn map<U>(self, f: impl Fn(C) -> U) -> Closure<U> {
         match self {
             Closure::Point => Closure::Point,

@@ -57,8 +57,8 @@ pub enum Variation<'a> {
 }
 
 impl Model<f64> {
-    /// The same robot with dual constants, whose derivatives are the sum of these changes. Every result has its exact
-    /// derivative in this direction:
+    /// A copy of the robot with dual constants, whose derivatives are the sum of these changes. Every result then has
+    /// its exact derivative in this direction:
     ///
     /// ```
     /// use mozzi::model::description::{Joint, JointKind};

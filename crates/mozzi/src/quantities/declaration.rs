@@ -197,7 +197,7 @@ pub struct Output {
     pub dims: &'static [Dim],
     /// Its unit, if it has one, for revolute joints, then for prismatic ones.
     pub unit: &'static str,
-    /// Is it a symmetric matrix? By rows and by columns it is then the same.
+    /// True for symmetric matrices, whose row- and column-major storage agree.
     pub is_symmetric: bool,
 }
 
@@ -242,7 +242,7 @@ pub(crate) const JACOBIANS: &[Dim] = &[Dim::N, Dim::Is(6), Dim::N];
 pub struct Uses(u8);
 
 impl Uses {
-    /// None of it.
+    /// No part.
     pub const NOTHING: Uses = Uses(0);
     /// Gravity.
     pub const GRAVITY: Uses = Uses(1);
@@ -252,7 +252,7 @@ impl Uses {
     pub const BASE_TWIST: Uses = Uses(4);
     /// The acceleration of {s}.
     pub const BASE_ACCELERATION: Uses = Uses(8);
-    /// All of it.
+    /// All parts.
     pub const ALL: Uses = Uses(15);
 
     /// The union of both.

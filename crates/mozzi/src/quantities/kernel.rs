@@ -1,4 +1,4 @@
-//! What a quantity and a kernel are, and how a quantity calls its kernel.
+//! The traits of quantities and kernels, and the call of a kernel by its quantity.
 
 use super::{Declaration, Memory, Of, Subject, Uses};
 use crate::linalg::Vec3;

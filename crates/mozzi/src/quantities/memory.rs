@@ -23,7 +23,7 @@ pub struct Memory<S = f64> {
     pub(crate) vector: Vec<S>,
     /// The dense n × n pattern.
     pub(crate) dense: Option<Pattern>,
-    /// For each number of rows that was asked for; the last call's comes first.
+    /// Cached per number of task rows, most recent first.
     pub(crate) tasks: Vec<TaskMemory<S>>,
     pub(crate) constraints: Option<ConstraintMemory<S>>,
     /// Replaces the query's point in the next call.

@@ -168,7 +168,7 @@ impl Query<'_> {
         [input(0), input(1), input(2), input(3)]
     }
 
-    /// The same for outputs.
+    /// The given outputs at their positions, after a check of their number.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn outputs<'a, S>(&self, given: &'a mut [&mut [S]]) -> Outputs<'a, S> {
         match given {

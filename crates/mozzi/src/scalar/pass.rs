@@ -1,4 +1,4 @@
-//! What is inlined, and why.
+//! Rules for inlining.
 //!
 //! Kernels are generic over the number, and one number, [`Fused`](super::Fused), is only fast in code that is compiled
 //! for fused multiply-add. So
@@ -8,10 +8,10 @@
 //!   a thread has.
 //! - **passes** over the robot are functions of their own, one for each number, which all quantities share: [`pass!`].
 //!   That of fused numbers is compiled for the instruction.
-//! - what is left of a quantity's kernel is inlined into its entry (`fast.rs`).
+//! - the rest of a quantity's kernel is inlined into its entry (`fast.rs`).
 
-/// A pass over the robot: for each number a function of its own, compiled once; for fused numbers with fused
-/// multiply-add.
+/// Defines a pass over the robot: a function of its own per number type, compiled once and shared by all quantities;
+/// for [`Fused`](super::Fused) numbers it is compiled for fused multiply-add.
 macro_rules! pass {
     (
         $(#[$attribute:meta])*

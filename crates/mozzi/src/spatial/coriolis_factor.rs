@@ -24,7 +24,7 @@ impl<S: Scalar> CoriolisFactor<S> {
         CoriolisFactor { K: G.rate(V).I.to_mat3() - Skew(P.m).to_mat3(), f: P.f }
     }
 
-    /// The same about the point p, in the same axes: K + 2 `[p][f]`.
+    /// 𝓑 about the point p, in the same axes: K + 2 `[p][f]`.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn about(self, p: Vec3<S>) -> Self {
         CoriolisFactor { K: self.K + Skew(p) * Skew(self.f + self.f), f: self.f }

@@ -60,7 +60,7 @@ impl<S: Scalar> SpatialInertia<S> {
         }
     }
 
-    /// The same body's inertia about the point p, in the same axes (Steiner).
+    /// The body's inertia about the point p, in the same axes (parallel-axis theorem).
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn about(self, p: Vec3<S>) -> Self {
         let mc = p.mul_add(-self.mass, self.mc);
@@ -69,7 +69,7 @@ impl<S: Scalar> SpatialInertia<S> {
         SpatialInertia { mass: self.mass, mc, I: self.I + Sym3::upper(steiner) }
     }
 
-    /// The same body's inertia seen from another frame {a}: with this one in {b}, T = `T_ab`.
+    /// The body's inertia in the frame {a}, from this one in {b} and T = `T_ab`.
     pub fn transformed(self, T_ab: SE3<S>) -> Self {
         self.congruence(T_ab.inverse().Ad())
     }

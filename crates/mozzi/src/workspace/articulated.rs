@@ -7,7 +7,7 @@ use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Of forward dynamics; an entry for each slot.
+/// Memory for forward dynamics by articulated bodies; one entry per slot.
 #[derive(Clone, Debug)]
 pub(crate) struct Articulated<S> {
     /// The velocity-product acceleration.

@@ -8,7 +8,7 @@ use crate::spatial::{AxisRate, CoriolisFactor, SpatialInertia, Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Of M, C, ∂τ, ∂θ̈ and products with ∂τ; an entry for each slot.
+/// Memory for M, C, ∂τ, ∂θ̈ and products with ∂τ; one entry per slot.
 #[derive(Clone, Debug)]
 pub(crate) struct Composite<S> {
     /// 𝒢, then 𝒢ᶜ of the link and all links beyond it.

@@ -28,7 +28,7 @@ pub struct Workspace<S = f64> {
     pub(crate) recursion: Recursion<S>,
     pub(crate) composite: Composite<S>,
     pub(crate) articulated: Articulated<S>,
-    /// Only for robots that have them.
+    /// Scratch for ∂θ̈ of long limbs; `None` for other robots.
     pub(crate) long_limbs: Option<LongLimbs<S>>,
     /// The pivots of the last solve, for the caller that can compare numbers.
     pub(crate) pivots: Vec<S>,

@@ -8,7 +8,7 @@ use crate::spatial::{Twist, Wrench};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Of the passes from the base to the tips and back; an entry for each slot.
+/// Memory for the passes from the base to the tips and back; one entry per slot.
 #[derive(Clone, Debug)]
 pub(crate) struct Recursion<S> {
     /// Sine and cosine of the joint's angle.

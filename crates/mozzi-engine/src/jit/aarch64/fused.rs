@@ -7,8 +7,8 @@ use crate::jit::operand::Register;
 use crate::jit::registers::Pinned;
 
 impl Line<'_, Arm> {
-    /// A result takes the place of an operand that is no longer needed. Of several lanes, a fused product must be where
-    /// its summand is, or where a copy of it is.
+    /// A result takes the place of an operand that is no longer needed. With several lanes, a fused product must be
+    /// where its summand is, or where a copy of it is.
     pub fn of_three(
         &mut self,
         here: usize,

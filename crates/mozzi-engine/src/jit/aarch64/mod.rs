@@ -40,7 +40,7 @@ pub(crate) struct Arm {
     tally: Tally,
     /// The registers in use, as bits.
     used: u32,
-    /// What [`POINTERS`] hold, an array and a byte, and the one that is replaced next.
+    /// The contents of [`POINTERS`], an array and a byte each, and the index of the one that is replaced next.
     pointers: [Option<(Memory, usize)>; 2],
     next_pointer: usize,
 }

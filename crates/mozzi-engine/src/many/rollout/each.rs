@@ -7,7 +7,7 @@ use mozzi_sim::Rollout;
 use std::convert::identity;
 
 impl BatchRollout {
-    /// The same steps of one robot.
+    /// A rollout of one robot with the same steps, gravity and checkpoints.
     ///
     /// # Errors
     /// As [`Rollout::new`].

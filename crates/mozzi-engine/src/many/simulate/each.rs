@@ -44,7 +44,7 @@ impl<T: Number> Batch<T> {
         found.into_iter().map(|(index, run)| run.map_err(|source| Error::State { index, source })).collect()
     }
 
-    /// Does dry friction act on a robot of these environments?
+    /// True if dry friction acts on any robot in these environments.
     pub(super) fn has_dry_friction(&self, environment: &BatchEnvironment<T>) -> bool {
         match environment.parameters {
             None => self.model().joints().any(|joint| joint.friction != 0.0),

@@ -1,4 +1,4 @@
-//! What operations and functions need of the evaluation that calls them.
+//! The context that operations and functions get from the evaluation that calls them.
 
 use crate::expression::operations::arguments::Arguments;
 use crate::expression::operations::host::Host;

@@ -43,7 +43,7 @@ pub(super) fn columns_of_base<S: Scalar + From<C>, C: Scalar>(
     }
 }
 
-/// The columns of W joints from a slot on, or of as many as there are.
+/// Up to W columns, starting at a slot.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn columns_of_joints<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -270,7 +270,7 @@ pub(super) fn add<const K: usize, S: Scalar>(y: &mut [S; K], k: S, x: [S; K]) {
     }
 }
 
-/// The same of K twists, by components.
+/// Adds p × ω to v, p = (x, y, z), for K twists at once as structure of arrays.
 #[cfg_attr(not(debug_assertions), inline(always))]
 #[rustfmt::skip]
 pub(super) fn shift_rows<const K: usize, S: Scalar>(a: &mut [[S; K]; 6], [x, y, z]: [S; 3]) {

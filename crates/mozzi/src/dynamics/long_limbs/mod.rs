@@ -49,8 +49,8 @@ use crate::workspace::{Articulated, ByRates, ByTheta, Composite, LongLimbs, Recu
 use columns::{add, columns_of_base, columns_of_joints, product, shift_rows, times};
 
 pass! {
-/// Fills the matrices, n × n by rows, with ∂θ̈/∂θ, ∂θ̈/∂θ̇ and M⁻¹. The workspace holds T and the factors
-/// of forward dynamics.
+/// Fills the matrices, n × n by rows, with ∂θ̈/∂θ, ∂θ̈/∂θ̇ and M⁻¹. Requires T and the factors of forward dynamics in
+/// the workspace.
 pub(super) fn derivatives<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>, theta: &[S], dtheta: &[S], ddtheta: &[S],
     environment: &Environment<S>, workspace: &mut Workspace<S>, matrices: [&mut [S]; 3],

@@ -1,4 +1,4 @@
-//! What methods of several outputs return.
+//! Results of the methods with several outputs.
 
 mod derivatives;
 mod newton_euler;

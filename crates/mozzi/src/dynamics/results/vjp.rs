@@ -29,17 +29,18 @@ pub struct ForwardDynamicsVjp {
     pub d_tau: DVector<f64>,
 }
 
-/// The gradient of xᵀτ or xᵀθ̈ by the robot: see
+/// The gradient of xᵀτ or xᵀθ̈ with respect to the robot's constants: see
 /// [`inverse_dynamics_parameter_vjp`](crate::dynamics::inverse_dynamics_parameter_vjp()).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterVjp {
-    /// By the [`parameters`](Model::parameters) π, in their order.
+    /// With respect to the [`parameters`](Model::parameters) π, in their order.
     pub d_parameters: DVector<f64>,
-    /// By the placement of each moving link's joint, a column (angular, linear) each, in the link's frame at θ = 0.
+    /// With respect to the placement of each moving link's joint, a column (angular, linear) each, in the link's frame
+    /// at θ = 0.
     pub d_placements: Matrix6xX<f64>,
-    /// By each joint's axis, the links staying where they are at θ = 0.
+    /// With respect to each joint's screw axis, with all links fixed at θ = 0.
     pub d_axes: Matrix6xX<f64>,
-    /// By gravity, in {s}.
+    /// With respect to gravity, in {s}.
     pub d_gravity: Vector3<f64>,
 }
 

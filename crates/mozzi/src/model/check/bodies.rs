@@ -23,7 +23,7 @@ struct Body {
     /// In the frame of its first link.
     inertia: SpatialInertia,
     links: usize,
-    /// Is the body moved by a joint, and does it carry no further joint?
+    /// True if a joint moves the body and the body carries no further joint.
     is_leaf: bool,
 }
 
@@ -115,7 +115,7 @@ impl Report<'_> {
     }
 }
 
-/// Is a principal moment negative beyond rounding error?
+/// True if a principal moment is negative beyond rounding error.
 fn is_indefinite(verdict: &InertiaVerdict) -> bool {
     let [a, b, c] = verdict.principal_moments;
     !verdict.is_physical() && a < -1e-9 * (a.abs() + b.abs() + c.abs())

@@ -81,7 +81,7 @@ impl Report<'_> {
         }
     }
 
-    /// Does the anchor exist?
+    /// Checks that the anchor's frame exists and its configuration is finite; false if it reported an error.
     fn anchor(
         &mut self,
         element: Element,
@@ -109,7 +109,7 @@ impl Report<'_> {
         }
     }
 
-    /// Can the anchors move relative to each other?
+    /// Reports anchors that are fixed to each other.
     fn can_move(
         &mut self,
         element: Element,
@@ -145,7 +145,7 @@ impl Report<'_> {
         }
     }
 
-    /// Does the joint exist, and does it have one axis?
+    /// Reports a joint that does not exist, or does not have exactly one axis.
     fn one_axis(&mut self, element: Element, attribute: &'static str, name: &str, joints: &BTreeMap<&str, Element>) {
         let d = self.description;
         match joints.get(name) {

@@ -6,7 +6,7 @@ use crate::spatial::SpatialInertia;
 use alloc::format;
 use alloc::string::ToString;
 
-/// Are all ten numbers finite, and the numbers computed from them?
+/// True if all ten numbers are finite, and so are the centre of mass and the inertia about it.
 pub(super) fn is_finite(inertia: &SpatialInertia) -> bool {
     let c = inertia.center_of_mass();
     let at_c = inertia.about_center_of_mass().to_mat3().rows();

@@ -67,7 +67,7 @@ impl Report<'_> {
     }
 }
 
-/// Are all constants of the model finite, and all lists computed from them?
+/// True if all constants of the model are finite, and all lists computed from them.
 fn is_finite(model: &Model) -> bool {
     let finite = Cell::new(true);
     model.map(|c: f64| {
