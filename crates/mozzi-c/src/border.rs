@@ -86,7 +86,7 @@ pub fn c_string(text: &str) -> CString {
     CString::new(text.replace('\0', " ")).unwrap_or_default()
 }
 
-/// Is every number finite? Number by number: there are few, and a loop in registers would take longer to begin.
+/// True if every number is finite. A scalar loop: the arrays are short, and a vectorized loop would start slower.
 #[inline(always)]
 pub fn are_finite(numbers: &[f64]) -> bool {
     numbers.iter().all(|x| x.is_finite())

@@ -59,7 +59,7 @@ impl From<Tensor> for Out {
     }
 }
 
-/// Are numbers by rows, without gaps, in these strides?
+/// True if these strides describe numbers by rows without gaps.
 #[inline(always)]
 fn is_by_rows(&[blocks, rows, columns]: &[usize; 3], &[block, row, column]: &[isize; 3]) -> bool {
     (columns <= 1 || column == 1)
@@ -67,7 +67,7 @@ fn is_by_rows(&[blocks, rows, columns]: &[usize; 3], &[block, row, column]: &[is
         && (blocks <= 1 || block == (rows * columns) as isize)
 }
 
-/// Do two arrays share memory?
+/// True if two arrays share memory.
 #[inline(always)]
 pub fn overlap(a: *const f64, a_length: usize, b: *const f64, b_length: usize) -> bool {
     let (a, b) = (a.addr(), b.addr());

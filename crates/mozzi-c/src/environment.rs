@@ -1,4 +1,4 @@
-//! What surrounds the robot: gravity, the motion of {s}, wrenches.
+//! The robot's environment: gravity, the motion of {s}, applied wrenches.
 
 use crate::border::{check_finite, slice};
 use crate::handle::{borrow, check_pointer};

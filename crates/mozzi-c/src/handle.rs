@@ -1,4 +1,4 @@
-//! Handles: what C holds of an object, with a tag that tells its kind and the copy of the library that made it.
+//! Handles: C's pointers to objects, with a tag that contains the kind and the copy of the library that made it.
 
 use crate::status::{Outcome, Status, refuse};
 

@@ -1,4 +1,4 @@
-//! A model with what C asks of it: names as C texts, frames by number, limits.
+//! A model with data for C: names as C strings, frames by number, limits.
 
 use crate::border::c_string;
 use crate::handle::{Handle, kind, put};
@@ -24,7 +24,7 @@ pub struct Robot {
     pub plans: Vec<Plan>,
     /// The most numbers that the outputs of a quantity have together.
     pub most_numbers: usize,
-    /// Does θ have quaternions?
+    /// True if θ contains quaternions.
     pub has_quaternions: bool,
 }
 
@@ -33,7 +33,7 @@ kind!(Arc<Robot>, "mozzi_model");
 /// `struct mozzi_model`.
 pub type ModelHandle = Handle<Arc<Robot>>;
 
-/// What a call of a quantity needs to know, with all six rows of a task.
+/// Arguments and sizes for a call of a quantity, with all six rows of a task.
 pub struct Plan {
     pub query: Query<'static>,
     pub declaration: &'static Declaration,

@@ -95,7 +95,7 @@ struct Caller<'a> {
     torque: Torque,
     record: Record,
     user: *mut c_void,
-    /// Has the function of torques reported a failure?
+    /// Set when the torque function reported a failure.
     failed: &'a Cell<bool>,
 }
 

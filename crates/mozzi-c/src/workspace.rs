@@ -22,7 +22,7 @@ pub struct Workspace {
 // SAFETY: the memory is used by the holder of `Locked` alone.
 unsafe impl Sync for Workspace {}
 
-/// What a call needs.
+/// Memory for the calls of one workspace.
 pub struct Memory {
     pub fast: fast::Workspace,
     pub program: Option<Compiled>,

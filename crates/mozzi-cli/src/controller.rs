@@ -34,7 +34,7 @@ const KINDS: [(&str, Object); 5] = [
 ];
 const OF_FRAME: &[&str] = &["model", "frame", "posture_p", "posture_d"];
 
-/// What errors call the file.
+/// Name of the file in errors.
 const WHOLE: &str = "the controller's file";
 
 /// Other names of kinds.

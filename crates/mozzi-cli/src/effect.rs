@@ -1,5 +1,5 @@
 //! Flags that do nothing without another flag: given alone they are an error. clap's `requires` is not enough, since it
-//! does not ask for a flag that another given flag excludes.
+//! does not require a flag that another given flag excludes.
 
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;

@@ -39,7 +39,7 @@ pub fn write(text: &str) {
     write_styled(&terminal::message(text));
 }
 
-/// The same with colours, for a text without other control characters.
+/// Writes a coloured text without other control characters to standard error.
 fn write_styled(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }

@@ -79,7 +79,7 @@ impl GroundArguments {
         Ok(found)
     }
 
-    /// True if columns of forces are asked for.
+    /// True if the output has columns of contact forces.
     pub fn writes_forces(&self) -> bool {
         self.contact_forces
     }

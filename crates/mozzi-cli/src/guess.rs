@@ -45,12 +45,12 @@ pub fn meant(words: Vec<OsString>, program: &Command) -> Result<Vec<OsString>, S
     })
 }
 
-/// Is it a quantity's name, or a list of some?
+/// True for a quantity's name, or a list of names.
 fn is_quantity(word: &str) -> bool {
     word.split(',').all(|name| Query::named(name).is_ok())
 }
 
-/// Is it an embedded robot, or a file that may be one?
+/// True for an embedded robot, or a file that may contain a robot.
 fn is_robot(word: &str) -> bool {
     let has_ending = [".urdf", ".xacro", ".xml", ".mjcf"].iter().any(|ending| word.ends_with(ending));
     mozzi_urdf::embedded::text(word).is_some() || has_ending && Path::new(word).is_file()

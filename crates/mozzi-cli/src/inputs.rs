@@ -67,12 +67,12 @@ impl FromArgMatches for InputArguments {
 }
 
 impl InputArguments {
-    /// Is the input given?
+    /// True if the input is given.
     pub fn has(&self, name: &str) -> bool {
         self.0.contains_key(name)
     }
 
-    /// Is a state given, by numbers or by name?
+    /// True if a state is given, by numbers or by name.
     pub fn has_state(&self) -> bool {
         [STATE, "theta", "dtheta"].iter().any(|name| self.has(name))
     }

@@ -17,7 +17,7 @@ struct Unfinished {
     part: Option<PathBuf>,
 }
 
-/// Makes Ctrl-C set a flag instead of ending the program, for commands that check whether it [`asked`].
+/// Makes Ctrl-C set a flag instead of ending the program, for commands that check [`is_requested`].
 pub fn listen() {
     LISTENING.call_once(|| {
         if let Err(error) = ctrlc::set_handler(answer) {
@@ -33,7 +33,7 @@ pub fn end_at_once() {
 }
 
 /// Whether Ctrl-C was pressed.
-pub fn asked() -> bool {
+pub fn is_requested() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 

@@ -125,7 +125,7 @@ enum Command {
     /// Check a robot's file: all errors and warnings, each with its place
     #[command(aliases = ["lint", "validate"])]
     Check(check::CheckArguments),
-    /// Convert a robot to URDF, JSON, or Python for NumPy
+    /// Convert a robot to URDF, SDFormat, MJCF, JSON, or Python for NumPy
     Convert(convert::ConvertArguments),
     /// Derive the equations in symbols: M(θ), c, g, τ, T, J, … as text, LaTeX, SymPy, Python, MATLAB or Julia
     #[command(after_help = DERIVATIONS, aliases = ["equations", "symbolic"])]
@@ -149,7 +149,7 @@ Examples:
   mozzi                                  the tour
   mozzi robots                           the embedded robots
   mozzi info panda                       joints, limits, links, masses, frames
-  mozzi check my_robot.urdf              what is wrong with a file
+  mozzi check my_robot.urdf              errors and warnings of a file
   mozzi terms ur5 --q 0,-1.2,1.5,0.3,1.1,0
                                          the terms of the dynamics at a state
   mozzi compute ur5 M,h,g --q 0,-70,85,20,60,0 --deg
@@ -337,7 +337,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Could the text control a terminal, or flood it?
+/// True for a text that could control a terminal, or flood it.
 fn is_odd(word: &str) -> bool {
     terminal::message(word) != word
 }

@@ -141,7 +141,7 @@ impl MotorArguments {
         Ok(Some(Followed { start: [start.theta, start.dtheta], reference: Box::new(reference) }))
     }
 
-    /// The actuators of an MJCF file and its gravity compensation, with the controls of a state: if --torque asks for
+    /// The actuators of an MJCF file and its gravity compensation, with the controls of a state: if --torque requests
     /// them, or without --torque and --controller if they act.
     pub fn actuated(&self, robot: &RobotArguments, model: &Model, state: Option<&str>) -> Result<Option<Actuators>> {
         let is_asked = self.torque.as_deref() == Some(ACTUATORS);

@@ -45,7 +45,7 @@ pub fn one_or_each(flag: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f6
     }
 }
 
-/// What was written with a number.
+/// The suffix of a number.
 #[derive(Clone, Copy, PartialEq)]
 enum Unit {
     Plain,

@@ -12,7 +12,7 @@ pub fn quantity() -> impl TypedValueParser<Value = Query<'static>> {
     Names
 }
 
-/// What other commands compute, by names that are taken for quantities.
+/// Names that are mistaken for quantities, with the command that computes them.
 const ELSEWHERE: [(&str, &str); 8] = [
     ("closed", "`mozzi terms MODEL --stacked` shows the closed form"),
     ("newton", "`mozzi terms MODEL --all` shows the Newton-Euler recursion"),
@@ -24,14 +24,14 @@ const ELSEWHERE: [(&str, &str); 8] = [
     ("energy", "its parts: `mozzi compute MODEL kinetic-energy,potential-energy`"),
 ];
 
-/// What computes that which a word names, if it is no quantity.
+/// The command for a name that is not a quantity.
 pub fn elsewhere(name: &str) -> Option<&'static str> {
     let plain = name.replace('-', "_");
     let is_meant = |known: &str| plain == known || known.len() > 3 && plain.starts_with(known);
     ELSEWHERE.iter().find(|(known, _)| is_meant(known)).map(|(_, tip)| *tip)
 }
 
-/// The names of quantities; an unknown one is answered by the nearest, not by all.
+/// The names of quantities; the error for an unknown one lists the nearest, not all.
 #[derive(Clone)]
 struct Names;
 
@@ -74,7 +74,7 @@ pub fn hyphenated(name: &str) -> String {
     name.replace('_', "-")
 }
 
-/// Does the quantity refer to a frame?
+/// True if the quantity refers to a frame.
 pub fn is_of_a_frame(query: Query) -> bool {
     matches!(query.declaration().of, Of::Frame | Of::Task)
 }

@@ -25,11 +25,10 @@ const LARGE: usize = 20_000_000;
 /// Which meshes go into a page.
 #[derive(Args, Debug)]
 pub struct MeshArguments {
-    /// Which meshes of the robot's file go into the page, where they are at hand
+    /// Meshes of the robot's file to embed in the page, if they are found
     #[arg(long, value_name = "WHICH", default_value = "visual")]
     meshes: Which,
-    /// A folder above the meshes of the robot's file that lie outside of its own folder and package; they go into the
-    /// page, too
+    /// A folder above meshes outside of the robot file's own folder and package; they are embedded as well
     #[arg(long, value_name = "FOLDER")]
     mesh_root: Option<PathBuf>,
     /// Allow a page of a xacro file that reads variables of the environment, or files outside of its folder and of
@@ -42,7 +41,7 @@ pub struct MeshArguments {
 pub struct PageArguments {
     #[command(flatten)]
     meshes: MeshArguments,
-    /// At most so many rows of the motion go into the page, at equal times; or "all"
+    /// Maximum number of rows of the motion in the page, at equal times; or "all"
     #[arg(long, value_name = "N", default_value_t = Rows(mozzi_report::ROWS))]
     page_rows: Rows,
 }
@@ -71,9 +70,9 @@ impl Display for Rows {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Which {
-    /// Those that are meant to be seen; of a link without any, those that collide
+    /// Visual meshes; for a link without any, its collision meshes
     Visual,
-    /// Those that collide, mostly smaller; of a link without any, its visual boxes, cylinders and balls
+    /// Collision meshes, mostly smaller; for a link without any, its visual boxes, cylinders and balls
     Collision,
     /// None
     None,

@@ -30,7 +30,7 @@ pub struct PolicyArguments {
     /// Repair errors where possible, such as an unphysical inertia, and report each repair
     #[arg(long, conflicts_with = "strict")]
     lenient: bool,
-    /// Free the base: θ begins with its quaternion (w, x, y, z) and origin, θ̇ with its twist (ω, v), τ with the wrench
+    /// Floating base: θ begins with its quaternion (w, x, y, z) and origin, θ̇ with its twist (ω, v), τ with the wrench
     /// on it
     #[arg(long)]
     floating: bool,
@@ -107,7 +107,7 @@ impl PolicyArguments {
         self.model_and_axes(name_or_path).map(|(model, _)| model)
     }
 
-    /// The same, and the axes in which the file gives inertias.
+    /// The model, and the axes in which the file gives inertias.
     pub fn model_and_axes(&self, name_or_path: &str) -> Result<(Model, BTreeMap<String, SO3>)> {
         if !robot_json::is_json(name_or_path) {
             let Loaded { description, inertial_axes, .. } = self.load(name_or_path)?;

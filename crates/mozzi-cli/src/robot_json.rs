@@ -6,7 +6,7 @@ use mozzi_urdf::json::{self, Misplaced};
 
 pub use mozzi_urdf::json::write;
 
-/// Is this a robot's file of JSON? Decided by its name; for standard input, by whether it is an object.
+/// True for a robot's JSON file. Decided by its name; for standard input, by whether it is an object.
 pub fn is_json(name_or_path: &str) -> bool {
     if name_or_path == "-" {
         let text = input::robot_text().unwrap_or_default();

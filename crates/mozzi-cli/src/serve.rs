@@ -16,12 +16,12 @@ use std::time::{Duration, Instant};
 
 /// Time limit for the request's head.
 const FOR_HEAD: Duration = Duration::from_secs(5);
-/// Time limits for sending a piece of the answer, and all of it: this time, and more for each byte (100 kB/s).
+/// Time limits for sending a piece of the response, and all of it: this time, and more for each byte (100 kB/s).
 const FOR_PIECE: Duration = Duration::from_secs(10);
 const FOR_ANSWER: Duration = Duration::from_secs(20);
 const PER_BYTE: Duration = Duration::from_micros(10);
 const PIECE: usize = 1 << 16;
-/// Limits on time and bytes for data that a client still sends after the answer.
+/// Limits on time and bytes for data that a client still sends after the response.
 const FOR_REST: Duration = Duration::from_secs(1);
 const LONGEST_REST: usize = 8 << 20;
 /// Connections at the same time; a further one ends the oldest, so that slow clients keep nobody out.
@@ -40,7 +40,7 @@ impl Server {
         self.0.local_addr()
     }
 
-    /// Answers until Ctrl-C ends the program. No client can end it.
+    /// Serves until Ctrl-C ends the program. No client can end it.
     pub fn run(&self, page: String) -> Result<()> {
         interrupt::end_at_once();
         let (port, page) = (self.address()?.port(), Arc::<str>::from(page));
@@ -66,7 +66,7 @@ impl Server {
     }
 }
 
-/// Serves a page until Ctrl-C, and says where: on standard error, with `is_json` also on standard output.
+/// Serves a page until Ctrl-C, and prints its address: on standard error, with `is_json` also on standard output.
 pub fn show(
     robot: &str,
     page: String,
@@ -87,7 +87,7 @@ pub fn show(
     server.run(page).map_err(cannot)
 }
 
-/// One request and its answer.
+/// Reads one request and sends the response.
 fn visit(stream: &TcpStream, port: u16, page: &str) -> Result<()> {
     let end = Instant::now() + FOR_HEAD;
     let head = request::head(|piece| {
@@ -137,7 +137,7 @@ fn answer(mut stream: &TcpStream, status: &str, kind: &str, body: Option<&str>) 
     stream.flush()
 }
 
-/// Reads remaining data for a while: if the connection were closed earlier, the system would drop the answer.
+/// Reads remaining data for a while: if the connection were closed earlier, the system would drop the response.
 fn rest(mut stream: &TcpStream) -> Result<()> {
     stream.shutdown(Shutdown::Write)?;
     let end = Instant::now() + FOR_REST;

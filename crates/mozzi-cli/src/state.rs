@@ -84,13 +84,13 @@ impl MotionArguments {
 const GIVEN: &str = "given";
 
 impl StartArguments {
-    /// The name of the state that is asked for.
+    /// The name of the requested state.
     pub fn name<'a>(&'a self, model: &Model) -> Option<&'a str> {
         let is_state = |text: &&str| model.state_names().any(|name| name == *text);
         self.state.as_deref().or(self.theta.as_deref().filter(is_state))
     }
 
-    /// Is a state given?
+    /// True if a state is given.
     pub fn is_given(&self) -> bool {
         self.state.is_some() || self.theta.is_some() || self.dtheta.is_some()
     }

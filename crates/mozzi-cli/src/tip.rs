@@ -120,7 +120,7 @@ fn unknown(given: &str, program: &Command, command: &Command) -> String {
     }
 }
 
-/// Does the command have the flag with which a tip begins?
+/// True if the command has the flag with which a tip begins.
 fn is_of(tip: &str, flags: &[String]) -> bool {
     let begin = tip.strip_prefix("--").map(|rest| rest.split([' ', '[']).next().unwrap_or_default());
     begin.is_none_or(|flag| flags.iter().any(|known| known == flag))

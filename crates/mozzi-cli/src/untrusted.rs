@@ -48,7 +48,7 @@ pub fn inputs(file: &str, query: Query, model: &Model) -> Result<Vec<Vec<f64>>, 
     States::<f64>::read(file, query, model, &[]).map(|states| states.inputs).map_err(said)
 }
 
-/// The status and the body of the answer from the server of `mozzi view`; `read` is the connection.
+/// The status and the body of the response of the server of `mozzi view`; `read` is the connection.
 ///
 /// # Errors
 /// An error of the connection.

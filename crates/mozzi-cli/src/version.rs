@@ -1,4 +1,4 @@
-//! What `mozzi --version` says: the version, the commit, and what this build can do on this machine.
+//! Output of `mozzi --version`: the version, the commit, and the features of this build on this machine.
 
 use mozzi_engine::Shape;
 

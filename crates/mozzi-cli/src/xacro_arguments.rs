@@ -23,7 +23,7 @@ impl XacroArguments {
         }
     }
 
-    /// The same with more values.
+    /// Adds values of arguments.
     pub fn with(&self, values: &[(String, String)]) -> Self {
         let values = self.values.iter().chain(values).cloned().collect();
         XacroArguments { values, ..self.clone() }

@@ -35,8 +35,8 @@ pub struct Choice {
     pub stiffness: bool,
     /// The ten parameters of a payload fixed to this frame.
     pub payload: Option<FrameId>,
-    /// What acts like an inertia or a damping of either sign: friction with memory, friction that falls with speed, a
-    /// delay. Predictions contain it, the robot has the part that it can have.
+    /// Estimate apparent inertias and dampings of either sign, which stand for friction with memory, friction that
+    /// falls with speed, and delays. Predictions contain them; the robot gets the part that is physically possible.
     pub apparent: bool,
     /// Drive gains K, if `tau` holds motor currents i: τ = K i. They need a log with a known payload.
     pub gains: bool,
@@ -77,8 +77,8 @@ impl Choice {
         Choice { payload: Some(frame), ..Choice::only_friction() }
     }
 
-    /// Whether inertias and dampings of either sign are told apart from the robot's: with trusted links they would hide
-    /// wrong masses, with unknown gains everything.
+    /// True if apparent inertias and dampings are separated from the robot's. With trusted links they would hide wrong
+    /// masses, with unknown gains everything.
     pub fn is_apparent(&self) -> bool {
         self.apparent && self.links && !self.gains
     }

@@ -7,7 +7,7 @@ use crate::{Error, payload::Carried};
 use mozzi::quantities::{Query, Regressor, TipForces};
 use mozzi::{Environment, FrameId, Model, Wrench, fast};
 
-/// What a column belongs to.
+/// The parameter of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Entry k of the robot's [`parameters`](Model::parameters): a link's.
@@ -22,7 +22,8 @@ pub enum Kind {
     RotorViscous(usize),
     /// Its Coulomb friction.
     RotorCoulomb(usize),
-    /// What acts like the rotor inertia of entry k, behind the gears, where no rotor is felt: no part of the robot.
+    /// An apparent rotor inertia of entry k, from forces behind the gears, which rotors do not affect; not part of the
+    /// robot.
     Apparent(usize),
     /// Stribeck friction of an independent joint.
     Stribeck(usize),
@@ -58,7 +59,7 @@ pub struct Unknown {
     /// As in [`parameter_names`](Model::parameter_names); `joint.stribeck`, `joint.offset`, `payload.m`, `joint.gain`,
     /// `joint.apparent_inertia`.
     pub name: String,
-    /// What it is.
+    /// The parameter's kind.
     pub kind: Kind,
     /// The robot's own value.
     pub prior: f64,
@@ -80,7 +81,7 @@ fn link_parameters(model: &Model) -> usize {
 pub struct Columns<'m> {
     /// The robot.
     pub model: &'m Model,
-    /// What is estimated.
+    /// The choice of parameters to estimate.
     pub choice: Choice,
     /// The columns, in order.
     pub unknowns: Vec<Unknown>,
@@ -311,7 +312,7 @@ impl<'c, 'm> Equations<'c, 'm> {
         self.with_friction(state, [None, None], A, b);
     }
 
-    /// The same with Coulomb and Stribeck friction of unit size, otherwise those of θ̇.
+    /// Writes the equations with Coulomb and Stribeck friction of unit size, if given, instead of the friction of θ̇.
     fn with_friction(
         &mut self,
         [theta, dtheta, ddtheta, tau]: [&[f64]; 4],

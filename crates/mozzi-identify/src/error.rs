@@ -1,4 +1,4 @@
-//! What can be wrong with a log or with the options.
+//! Errors of logs and options.
 
 use crate::{Finding, Level};
 
@@ -57,19 +57,19 @@ pub enum Error {
         found: usize,
         /// The number that is needed.
         expected: usize,
-        /// What uses up rows.
+        /// The reason why rows are lost.
         why: String,
     },
     /// The log contradicts itself or the robot.
     #[error("{}; --trust-log fits such a log all the same", .faults.join("; also "))]
     Fault {
-        /// What, where, and what helps.
+        /// Each fault, its place, and the remedy.
         faults: Vec<String>,
     },
     /// The motion determines nothing.
     #[error("the motion does not excite the robot: {reason}; move every joint, or use `mozzi excite`")]
     NotExciting {
-        /// What is missing.
+        /// The missing excitation.
         reason: String,
     },
     /// An option has a wrong value.
@@ -79,7 +79,7 @@ pub enum Error {
         option: &'static str,
         /// Its value.
         found: String,
-        /// What was expected.
+        /// The expected value.
         expected: String,
     },
     /// The convex problem has no solution within the constraints.

@@ -1,4 +1,4 @@
-//! What was noticed in a log or in a fit, and did not stop it.
+//! Findings in a log or a fit that do not stop it.
 
 use core::fmt;
 

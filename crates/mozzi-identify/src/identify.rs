@@ -50,15 +50,15 @@ impl Default for Options {
 pub struct Errors {
     /// The force itself.
     pub force: Vec<f64>,
-    /// Of the robot as it was, with its own friction.
+    /// Errors of the given robot with its own friction.
     pub robot: Vec<f64>,
-    /// Of the robot as it was, with fitted friction and offsets.
+    /// Errors of the given robot with fitted friction and offsets.
     pub friction: Vec<f64>,
-    /// Of least squares.
+    /// Errors of least squares.
     pub least_squares: Vec<f64>,
-    /// Of bodies that exist.
+    /// Errors of the estimate with physically consistent bodies.
     pub consistent: Vec<f64>,
-    /// Of the robot alone, as files can hold it, with offsets: without what is apparent.
+    /// Errors of the robot as files can express it, with offsets, without apparent inertias and dampings.
     pub written: Vec<f64>,
 }
 
@@ -81,7 +81,7 @@ const BLOCKS: usize = 5;
 /// An identified robot.
 #[derive(Debug)]
 pub struct Identification<'m> {
-    /// What was fitted.
+    /// The fitted problem.
     pub setup: Setup<'m>,
     /// The filtered logs.
     pub samples: Vec<Samples>,
@@ -97,12 +97,12 @@ pub struct Identification<'m> {
     pub held_out: Option<Errors>,
     /// The fits that predicted the blocks.
     left_out_fits: Vec<Vec<f64>>,
-    /// What was noticed.
+    /// Findings in the logs and the fit.
     pub findings: Vec<Finding>,
     tenths: usize,
 }
 
-/// Identifies a robot from its logs. `stop` is asked now and then; once it is true, the best so far is the result.
+/// Identifies a robot from its logs. `stop` is polled; when it returns true, the best result so far is returned.
 ///
 /// # Errors
 /// [`Error`]: a log that cannot be read, a motion that excites nothing, or a wrong option.

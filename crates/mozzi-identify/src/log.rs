@@ -46,7 +46,7 @@ pub struct Rows {
     pub step: f64,
     /// N × n: whether the force is saturated there.
     pub saturated: Vec<bool>,
-    /// What was noticed.
+    /// Findings in the log.
     pub findings: Vec<Finding>,
 }
 

@@ -28,14 +28,14 @@ impl Default for RefineOptions {
     }
 }
 
-/// What the refinement changed.
+/// Result of the refinement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refinement {
     /// The unknowns.
     pub x: Vec<f64>,
     /// Root mean square errors of positions and of velocities in the windows, by joint, before.
     pub before: [Vec<f64>; 2],
-    /// The same afterwards.
+    /// Root mean square errors after the refinement.
     pub after: [Vec<f64>; 2],
 }
 

@@ -1,4 +1,4 @@
-//! What is fitted, apart from the data: columns, base parameters, priors and bounds.
+//! The problem to fit, apart from the data: columns, base parameters, priors and bounds.
 
 use crate::columns::{Columns, Kind};
 use crate::compress::{Evidence, Pattern, stacked};
@@ -23,7 +23,7 @@ pub struct Limits {
 /// The weight of a payload's prior relative to that of a link: the prior is a guess.
 const GUESS: f64 = 0.01;
 
-/// What is fitted.
+/// The problem to fit, apart from the data.
 #[derive(Clone, Debug)]
 pub struct Setup<'m> {
     /// The unknowns.
@@ -44,7 +44,7 @@ pub struct Setup<'m> {
 pub struct Estimates {
     /// By least squares.
     pub least_squares: LeastSquares,
-    /// Of bodies that exist.
+    /// The physically consistent estimate.
     pub consistent: Optimum,
 }
 

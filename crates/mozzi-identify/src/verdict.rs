@@ -1,4 +1,4 @@
-//! The answer in one sentence, and whether it can be trusted.
+//! The result in one sentence, and whether it can be trusted.
 
 use crate::{Errors, Identification, Kind};
 use core::fmt;

@@ -47,7 +47,7 @@ impl Convergence {
         Some(order).filter(|order| order.is_finite())
     }
 
-    /// Are its steps adaptive, chosen by a tolerance?
+    /// True if the method chooses its steps by a tolerance.
     pub fn is_adaptive(&self) -> bool {
         self.name == (Method::DormandPrince { tolerance: 1.0 }).name()
     }

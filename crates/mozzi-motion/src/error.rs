@@ -1,4 +1,4 @@
-//! What can go wrong with a motion, with the numbers.
+//! Errors of motions, with the numbers.
 
 use crate::inverse_kinematics::Residual;
 use mozzi::{Freedom, Model};

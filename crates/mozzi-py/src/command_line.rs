@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use std::ffi::OsString;
 
-/// Runs the command line with these words, the first of which is the program's name; returns the exit code.
+/// Run the command line with these words, the program's name first; return the exit code.
 #[pyfunction]
 pub fn _command_line(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| mozzi_cli::run_with(words))

@@ -17,7 +17,7 @@ fn of_comparison(error: Error) -> PyErr {
     }
 }
 
-/// The text and the JSON of the comparison, and whether all agree, and are explained.
+/// Compare a robot with other libraries: text, JSON, and whether all results agree and are explained.
 #[pyfunction]
 pub fn _compare(
     py: Python<'_>,

@@ -68,11 +68,13 @@ fn wanted(matrix: Option<DMatrix<f64>>) -> DMatrix<f64> {
     matrix.unwrap_or_else(|| DMatrix::zeros(0, 0))
 }
 
+/// Conversions to and from Pinocchio, made by `conventions.Pinocchio`.
 #[pyclass(frozen, module = "mozzi._mozzi")]
 pub struct Pinocchio(conventions::Pinocchio);
 
 macro_rules! vectors {
-    ($of:ty: $($name:ident($($argument:ident),*))*) => { #[pymethods] impl $of { $(
+    ($of:ty: $($name:ident($($argument:ident),*) $about:literal;)*) => { #[pymethods] impl $of { $(
+        #[doc = $about]
         fn $name<'py>(&self, py: Python<'py>, $($argument: &Bound<'py, PyAny>),*) -> Found<'py> {
             each(py, [$((stringify!($argument), $argument)),*], None, false, |[$($argument),*], _| column(self.0.$name($($argument),*)))
         }
@@ -80,7 +82,8 @@ macro_rules! vectors {
 }
 
 macro_rules! matrices {
-    ($of:ty: $($name:ident($($argument:ident),*))*) => { #[pymethods] impl $of { $(
+    ($of:ty: $($name:ident($($argument:ident),*) $about:literal;)*) => { #[pymethods] impl $of { $(
+        #[doc = $about]
         #[allow(non_snake_case)]
         fn $name<'py>(&self, py: Python<'py>, $($argument: &Bound<'py, PyAny>,)* M: &Bound<'py, PyAny>) -> Found<'py> {
             each(py, [$((stringify!($argument), $argument)),*], Some(("M", M)), true, |[$($argument),*], M| self.0.$name($($argument,)* &wanted(M)))
@@ -89,10 +92,19 @@ macro_rules! matrices {
 }
 
 vectors! { Pinocchio:
-    configuration(theta) from_configuration(q) velocity(dtheta) from_velocity(v) acceleration(ddtheta) from_acceleration(a)
-    force(tau) from_force(tau)
+    configuration(theta) "Convert positions θ, shape (..., nq), to Pinocchio's q.";
+    from_configuration(q) "Convert Pinocchio's q to positions θ, shape (..., nq).";
+    velocity(dtheta) "Convert velocities θ̇, shape (..., n), to Pinocchio's v.";
+    from_velocity(v) "Convert Pinocchio's v to velocities θ̇, shape (..., n).";
+    acceleration(ddtheta) "Convert accelerations θ̈, shape (..., n), to Pinocchio's a.";
+    from_acceleration(a) "Convert Pinocchio's a to accelerations θ̈, shape (..., n).";
+    force(tau) "Convert forces τ, shape (..., n), to Pinocchio's tau.";
+    from_force(tau) "Convert Pinocchio's tau to forces τ, shape (..., n).";
 }
-matrices! { Pinocchio: mass_matrix() from_mass_matrix() }
+matrices! { Pinocchio:
+    mass_matrix() "Convert a mass matrix, shape (..., n, n), to Pinocchio's.";
+    from_mass_matrix() "Convert Pinocchio's mass matrix to mozzi's, shape (..., n, n).";
+}
 
 #[pymethods]
 impl Pinocchio {
@@ -104,16 +116,19 @@ impl Pinocchio {
         conventions::Pinocchio::with_joints(model, &names, &nqs).map(Pinocchio).map_err(of_model)
     }
 
+    /// Index of mozzi's joint for each of Pinocchio's joints.
     #[getter]
     fn joints(&self) -> Vec<usize> {
         self.0.joints().to_vec()
     }
 
+    /// Number of entries of Pinocchio's q.
     #[getter]
     fn nq(&self) -> usize {
         self.0.nq()
     }
 
+    /// Convert a Jacobian, shape (..., 6, n), angular rows first, to Pinocchio's, linear rows first.
     fn jacobian<'py>(&self, py: Python<'py>, J: &Bound<'py, PyAny>) -> Found<'py> {
         each(py, [], Some(("J", J)), true, |[], J| {
             let J = wanted(J);
@@ -126,14 +141,24 @@ impl Pinocchio {
     }
 }
 
+/// Conversions to and from MuJoCo, made by `conventions.MuJoCo`.
 #[pyclass(frozen, module = "mozzi._mozzi")]
 pub struct MuJoCo(conventions::MuJoCo);
 
 vectors! { MuJoCo:
-    configuration(theta) from_configuration(qpos) velocity(theta, dtheta) from_velocity(qpos, qvel)
-    acceleration(theta, dtheta, ddtheta) from_acceleration(qpos, qvel, qacc) force(theta, tau) from_force(qpos, qfrc)
+    configuration(theta) "Convert positions θ, shape (..., nq), to MuJoCo's qpos.";
+    from_configuration(qpos) "Convert MuJoCo's qpos to positions θ, shape (..., nq).";
+    velocity(theta, dtheta) "Convert velocities θ̇, shape (..., n), at θ to MuJoCo's qvel.";
+    from_velocity(qpos, qvel) "Convert MuJoCo's qvel to velocities θ̇, shape (..., n).";
+    acceleration(theta, dtheta, ddtheta) "Convert accelerations θ̈, shape (..., n), at θ and θ̇ to MuJoCo's qacc.";
+    from_acceleration(qpos, qvel, qacc) "Convert MuJoCo's qacc to accelerations θ̈, shape (..., n).";
+    force(theta, tau) "Convert forces τ, shape (..., n), at θ to MuJoCo's qfrc; for h see `bias_forces`.";
+    from_force(qpos, qfrc) "Convert MuJoCo's qfrc to forces τ, shape (..., n).";
 }
-matrices! { MuJoCo: mass_matrix(theta) from_mass_matrix(qpos) }
+matrices! { MuJoCo:
+    mass_matrix(theta) "Convert a mass matrix, shape (..., n, n), at θ to MuJoCo's.";
+    from_mass_matrix(qpos) "Convert MuJoCo's mass matrix to mozzi's, shape (..., n, n).";
+}
 
 #[pymethods]
 impl MuJoCo {
@@ -145,11 +170,13 @@ impl MuJoCo {
         conventions::MuJoCo::with_joints(model, &names).map(MuJoCo).map_err(of_model)
     }
 
+    /// Index of mozzi's joint for each of MuJoCo's joints.
     #[getter]
     fn joints(&self) -> Vec<usize> {
         self.0.joints().to_vec()
     }
 
+    /// Convert h, shape (..., n), at θ and θ̇ to MuJoCo's qfrc_bias, with mozzi's M.
     #[allow(non_snake_case)]
     fn bias_forces<'py>(
         &self,
@@ -165,6 +192,7 @@ impl MuJoCo {
         })
     }
 
+    /// Convert MuJoCo's qfrc_bias to h, shape (..., n), with mozzi's M.
     #[allow(non_snake_case)]
     fn from_bias_forces<'py>(
         &self,

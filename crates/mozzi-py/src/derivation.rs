@@ -46,21 +46,22 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// quantity : str
-    ///     Its name: 'mass_matrix', 'M', 'velocity_product', 'gravity_forces', 'inverse_dynamics', …
+    ///     Name of the quantity: 'mass_matrix', 'M', 'velocity_product', 'gravity_forces', 'inverse_dynamics', …
     /// frame : str, optional
-    ///     Its frame, by default the end effector.
+    ///     Its frame. Default: the end effector.
     /// symbols : str, optional
     ///     Numbers that become symbols: 'masses', 'lengths', 'inertias', 'gravity', 'joints', separated by commas;
     ///     'all' or 'none'. Default: 'all' up to three moving links, else 'none'.
     /// equal : str, optional
-    ///     'none': each number is a symbol; 'link': equal numbers of one link are one; 'robot': those of the robot.
+    ///     'none': each number is a symbol of its own; 'link': equal numbers of one link share a symbol; 'robot': equal
+    ///     numbers of the robot do.
     /// collect : str, optional
-    ///     'shortest', or 'velocities': grouped by products of velocities.
+    ///     'shortest' form, or 'velocities': terms grouped by products of velocities.
     /// cse : bool, optional
     ///     Name sub-expressions that occur more than once.
     /// urdf : str, optional
-    ///     The URDF text whose decimals are read. Default: the shortest decimals of the model's numbers; the text of an
-    ///     embedded robot.
+    ///     The URDF text from which exact decimals are read. Default: the text of an embedded robot; for other robots
+    ///     the shortest decimals of the model's numbers.
     ///
     /// Returns
     /// -------
@@ -120,13 +121,13 @@ impl PyModel {
 
 #[pymethods]
 impl PyDerivation {
-    /// The quantity's name.
+    /// Name of the quantity.
     #[getter]
     fn quantity(&self) -> &'static str {
         self.0.quantity
     }
 
-    /// The numbers of the file by the names of the symbols that occur.
+    /// Numbers of the file by the names of the symbols that occur: `{symbol: value}`.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let values = PyDict::new(py);
@@ -136,7 +137,7 @@ impl PyDerivation {
         Ok(values)
     }
 
-    /// Additions, products, and different sines and cosines of all that is printed.
+    /// Number of additions, of products, and of different sines and cosines in the printed equations.
     #[getter]
     fn operations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let count = self.0.operations();
@@ -155,36 +156,42 @@ impl PyDerivation {
         self.0.print(Language::Markdown)
     }
 
-    /// As LaTeX with amsmath.
+    /// Return the equations as LaTeX with amsmath.
     fn latex(&self) -> String {
         self.0.print(Language::Latex)
     }
 
-    /// As Markdown with LaTeX formulas and a table of the symbols.
+    /// Return the equations as Markdown with LaTeX formulas and a table of the symbols.
     fn markdown(&self) -> String {
         self.0.print(Language::Markdown)
     }
 
-    /// As the text of a Python function of NumPy arrays.
+    /// Return the text of a Python function of NumPy arrays.
     fn python(&self) -> String {
         self.0.print(Language::Python)
     }
 
-    /// As the text of a MATLAB function.
+    /// Return the text of a MATLAB function.
     fn matlab(&self) -> String {
         self.0.print(Language::Matlab)
     }
 
-    /// As the text of a Julia function.
+    /// Return the text of a Julia function.
     fn julia(&self) -> String {
         self.0.print(Language::Julia)
     }
 
-    /// As SymPy's expression or matrix, with exact numbers; a dict of them for several results. Needs SymPy.
+    /// Return the equations as SymPy's expression or matrix, with exact numbers. Needs SymPy.
     ///
     /// Returns
     /// -------
     /// sympy.Expr, sympy.Matrix or dict
+    ///     A dict by name for several results.
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     If SymPy is not installed.
     fn sympy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let code =
             CString::new(self.0.print(Language::Sympy)).map_err(|error| PyValueError::new_err(error.to_string()))?;

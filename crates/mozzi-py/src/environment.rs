@@ -16,7 +16,7 @@ pub struct ArrayEnvironment<'py> {
     gravity: Vec3,
     base_twist: Twist,
     base_acceleration: Twist,
-    /// The same in all states.
+    /// Wrenches that are equal in all states.
     applied: Vec<(FrameId, Wrench)>,
     /// A wrench for each state.
     wrenches: Vec<(FrameId, Numbers<'py>)>,

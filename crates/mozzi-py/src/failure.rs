@@ -8,28 +8,35 @@ create_exception!(
     mozzi,
     LoadError,
     PyValueError,
-    "A robot's file is wrong. `diagnostics` has one line for each finding: errors in the order of the file, then warnings, those that change the motion first."
+    "A robot's file is invalid.
+
+`diagnostics` has one line for each finding: errors in the order of the file, then warnings, those that change the
+motion first."
 );
-create_exception!(mozzi, LoadWarning, PyUserWarning, "What is odd about a robot's file, and computed as it stands.");
+create_exception!(mozzi, LoadWarning, PyUserWarning, "A robot's file is odd; its values are used as they are.");
 create_exception!(
     mozzi,
     DynamicsWarning,
     LoadWarning,
-    "Something of a robot's file that is not computed, or replaced, so that the robot may move differently: a force, a property, an unknown word."
+    "An element of a robot's file is ignored or replaced, so that the robot may move differently.
+
+Such an element is a force, a property or an unknown word."
 );
 create_exception!(
     mozzi,
     SingularError,
     PyArithmeticError,
-    "The mass matrix, or a task, is singular at a state: no acceleration or wrench answers."
+    "The mass matrix, or a task, is singular at a state; the acceleration or the wrench is undefined."
 );
 create_exception!(mozzi, DivergedError, PyArithmeticError, "A simulated state became infinite or NaN.");
 create_exception!(
     mozzi,
     MotionError,
     PyArithmeticError,
-    "A motion cannot be found: the goal is out of reach, the path breaks or leaves the robot's reach, a motor is too weak, or nothing limits the \
-     speed."
+    "No motion was found.
+
+The goal is out of reach, the path breaks or leaves the robot's reach, a motor is too weak, or nothing limits the
+speed."
 );
 
 /// An error of the library, or of a simulation.

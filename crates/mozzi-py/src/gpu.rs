@@ -86,19 +86,19 @@ impl GpuKernel {
         Ok(GpuKernel { kernel, outputs })
     }
 
-    /// Names and lengths.
+    /// Names and lengths of the inputs.
     #[getter]
     fn inputs(&self) -> Vec<(String, usize)> {
         self.kernel.source().inputs().iter().map(|input| (input.name.clone(), input.length)).collect()
     }
 
-    /// Names and shapes.
+    /// Names and shapes of the outputs.
     #[getter]
     fn outputs(&self) -> Vec<(&'static str, Vec<usize>)> {
         self.outputs.clone()
     }
 
-    /// Launches it on arrays at these addresses, whose lengths `mozzi._gpu` has checked.
+    /// Launches the kernel on arrays at these addresses, whose lengths `mozzi._gpu` has checked.
     fn launch(&self, inputs: Vec<u64>, outputs: Vec<u64>, states: usize, stream: usize) -> PyResult<()> {
         // SAFETY: addresses and shapes are those of arrays that Python's frameworks own on this device, checked by
         // `mozzi._gpu`, which also hands over the stream on which they are used
@@ -120,8 +120,9 @@ impl GpuRollout {
         Rollout::load(&device, &source, &binary).map(GpuRollout).map_err(failure)
     }
 
-    /// Launches it on arrays at these addresses, whose lengths `mozzi._gpu` has checked: θ and θ̇; τ or none; gains and
-    /// desired states or none; the tables of θ and θ̇.
+    /// Launches the steps on arrays at these addresses, whose lengths `mozzi._gpu` has checked.
+    ///
+    /// They are θ and θ̇; τ or none; gains and desired states or none; the tables of θ and θ̇.
     #[allow(clippy::too_many_arguments)] // called by `mozzi._gpu` alone
     fn launch(
         &self,
@@ -145,7 +146,7 @@ impl GpuRollout {
 
 #[pymethods]
 impl PyModel {
-    /// The robot on an NVIDIA GPU: its quantities of arrays that are there, where they are.
+    /// Return the robot on an NVIDIA GPU, whose methods compute quantities of arrays in the GPU's memory.
     ///
     /// Parameters
     /// ----------
@@ -153,12 +154,12 @@ impl PyModel {
     ///     'rows': arrays (..., n), as everywhere in mozzi. 'columns': arrays (n, N), which need
     ///     fewer instructions.
     /// device : int
-    ///     The device's number.
+    ///     Number of the device.
     ///
     /// Returns
     /// -------
     /// Gpu
-    ///     With the quantities as methods: see docs/gpu-guide.md.
+    ///     Its methods are the quantities: see docs/gpu-guide.md.
     ///
     /// Raises
     /// ------

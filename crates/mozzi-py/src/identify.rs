@@ -114,8 +114,10 @@ fn choice(model: &Model, options: &Bound<'_, PyDict>) -> PyResult<Choice> {
     Ok(choice)
 }
 
-/// The report as JSON and as HTML, the identified robot, and the predicted forces of each log, N × n of those samples
-/// that were used, with their times.
+/// Identify a robot from logs; `mozzi.identify` names the results.
+///
+/// Returns the report as JSON and as HTML, the identified robot, and the times, measured and predicted forces, N × n,
+/// of the samples that were used of each log.
 #[pyfunction]
 #[allow(clippy::type_complexity)] // a tuple for Python, which names its parts
 pub fn _identify<'py>(
@@ -186,8 +188,10 @@ pub fn _identify<'py>(
     Ok((json, html, PyModel::built(description.build())?, tables))
 }
 
-/// t, θ, θ̇ and θ̈ of a motion, its condition number and that of a random one, and base parameters with the deviations
-/// that its log will give.
+/// Find an exciting motion; `mozzi.excite` names the results.
+///
+/// Returns t, θ, θ̇ and θ̈, the condition number and that of a random motion, and the base parameters with their
+/// expected standard deviations.
 #[pyfunction]
 #[allow(clippy::type_complexity)] // a tuple for Python, which names its parts
 pub fn _excite<'py>(
@@ -237,7 +241,7 @@ pub fn _excite<'py>(
     Ok((arrays, found.condition, found.condition_of_random, found.parameters))
 }
 
-/// The files that hold this robot's numbers, edited: their names and texts.
+/// Return the names and texts of the files that hold this robot's numbers, edited.
 #[pyfunction]
 pub fn _edited_files(
     name: &str,

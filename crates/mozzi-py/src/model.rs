@@ -1,12 +1,12 @@
-//! Python's `Model`: where it comes from, what it is turned into.
+//! Python's `Model`: machine code, copies, pickling and text.
 
 use crate::describe::{State, from_state, to_state};
 use crate::failure::of_model;
+use crate::html;
 use crate::numpy::Fresh;
 use crate::results::named;
 use crate::robot::{Asked, Machine, Robot};
 use crate::threads::Threads;
-use crate::{html, load};
 
 use mozzi::FrameId;
 use mozzi::quantities::{Of, Query};
@@ -16,12 +16,13 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A robot: made from a file, a text, the book's lists, or by `mozzi.models`. It never changes, and may be shared by
-/// threads.
+/// A robot; its methods compute one quantity each.
 ///
-/// Its methods compute one quantity each. Arguments are anything NumPy makes an array of; the last axis is a state,
-/// leading axes are many states, computed on all cores, broadcast by NumPy's rule. Results are float32 where all arrays
-/// given are, else float64.
+/// Made from a file (`load`), a text, the book's lists, or by `mozzi.models`. A model never changes, and threads may
+/// share it.
+///
+/// Arguments are anything NumPy makes an array of. The last axis is a state; leading axes are many states, which are
+/// broadcast by NumPy's rule and computed on all cores. Results are float32 if all arrays given are, else float64.
 ///
 /// Examples
 /// --------
@@ -88,43 +89,10 @@ pub fn array<'py>(
 
 #[pymethods]
 impl PyModel {
-    /// The robot of any file (URDF, xacro, MJCF, SDFormat, JSON of `mozzi convert`), or an embedded robot by its name.
+    /// Compute a quantity by any of its names: `compute("M", theta)` is `mass_matrix(theta)`.
     ///
-    /// Parameters
-    /// ----------
-    /// name_or_path : str, path or file
-    ///     Name of an embedded robot, a path, or an object with `read`.
-    /// policy : str, optional
-    ///     'strict': warnings are errors; 'lenient': repair inertias and warn.
-    /// floating : bool, optional
-    ///     Free the base.
-    /// xacro_args, packages : dict, optional
-    ///     Values of a xacro file's arguments, and folders of ROS packages, by name.
-    ///
-    /// Returns
-    /// -------
-    /// Model
-    ///
-    /// Examples
-    /// --------
-    /// >>> import mozzi
-    /// >>> mozzi.Model.load("ur5").n
-    /// 6
-    #[staticmethod]
-    #[pyo3(signature = (name_or_path, *, policy="default", floating=false, xacro_args=None, packages=None))]
-    fn load(
-        name_or_path: &Bound<'_, PyAny>,
-        policy: &str,
-        floating: bool,
-        xacro_args: Option<Bound<'_, PyDict>>,
-        packages: Option<Bound<'_, PyDict>>,
-    ) -> PyResult<Self> {
-        let xacro = load::Xacro { values: xacro_args, packages };
-        load::any(name_or_path, policy, floating, &xacro).map(Self::of)
-    }
-
-    /// A quantity by any of its names: `compute("M", theta)` is `mass_matrix(theta)`. The book's symbols (M, C, c, g,
-    /// h, J_b, J_s, Lambda, T), and Featherstone's and Pinocchio's names (rnea, crba, aba, nle, fk) are known.
+    /// The book's symbols (M, C, c, g, h, J_b, J_s, Lambda, T), and Featherstone's and Pinocchio's names (rnea, crba,
+    /// aba, nle, fk) are known.
     ///
     /// Parameters
     /// ----------
@@ -137,6 +105,11 @@ impl PyModel {
     /// -------
     /// numpy.ndarray, float or a named tuple
     ///     The result of the method.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     For an unknown name; the message lists the nearest.
     ///
     /// Examples
     /// --------
@@ -151,67 +124,6 @@ impl PyModel {
         kwargs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         slf.call_method(Query::named(quantity).map_err(of_model)?.name(), args, kwargs)
-    }
-
-    /// The robot of a URDF, xacro, MJCF or SDFormat file: a path or file. `policy` 'strict' refuses oddities,
-    /// 'lenient' repairs inertias and says so; `floating` frees the base. A xacro file is expanded with `xacro_args`
-    /// (the values of its arguments by name) and `packages` (the folders of `$(find name)`).
-    #[staticmethod]
-    #[pyo3(signature = (path_or_file, *, policy="default", floating=false, xacro_args=None, packages=None))]
-    fn from_urdf(
-        path_or_file: &Bound<'_, PyAny>,
-        policy: &str,
-        floating: bool,
-        xacro_args: Option<Bound<'_, PyDict>>,
-        packages: Option<Bound<'_, PyDict>>,
-    ) -> PyResult<Self> {
-        let xacro = load::Xacro { values: xacro_args, packages };
-        load::file(path_or_file, policy, floating, &xacro).map(Self::of)
-    }
-
-    /// As `from_urdf`: the language is told by the file's first element.
-    #[staticmethod]
-    #[pyo3(signature = (path_or_file, *, policy="default", floating=false))]
-    fn from_mjcf(path_or_file: &Bound<'_, PyAny>, policy: &str, floating: bool) -> PyResult<Self> {
-        load::file(path_or_file, policy, floating, &load::Xacro::default()).map(Self::of)
-    }
-
-    /// The robot of a text of URDF, xacro, MJCF or SDFormat, str or bytes; the rest as for `from_urdf`.
-    #[staticmethod]
-    #[pyo3(signature = (
-        text, *, name="robot.urdf", policy="default", floating=false, xacro_args=None, packages=None
-    ))]
-    fn from_urdf_string(
-        text: &Bound<'_, PyAny>,
-        name: &str,
-        policy: &str,
-        floating: bool,
-        xacro_args: Option<Bound<'_, PyDict>>,
-        packages: Option<Bound<'_, PyDict>>,
-    ) -> PyResult<Self> {
-        let xacro = load::Xacro { values: xacro_args, packages };
-        load::text(text, name, policy, floating, &xacro).map(Self::of)
-    }
-
-    /// A serial chain of the book's lists: n + 1 home frames (4, 4), each seen from the one before ('relative', as of
-    /// the Modern Robotics package) or from the base ('base'); n spatial inertias (6, 6), each in its link's frame; and
-    /// the screw axes, the columns of a matrix (6, n), in the 'space', 'body' or 'link' frame.
-    #[staticmethod]
-    #[pyo3(signature = (M_list, G_list, S_list, *, name="robot", frames="relative", axes="space"))]
-    fn from_screws(
-        M_list: &Bound<'_, PyAny>,
-        G_list: &Bound<'_, PyAny>,
-        S_list: &Bound<'_, PyAny>,
-        name: &str,
-        frames: &str,
-        axes: &str,
-    ) -> PyResult<Self> {
-        load::screws(name, [M_list, G_list, S_list], frames, axes).map(Self::of)
-    }
-
-    #[staticmethod]
-    fn _embedded(py: Python<'_>, name: &str, floating: bool) -> PyResult<Self> {
-        load::embedded(py, name, floating).map(Self::of)
     }
 
     #[staticmethod]
@@ -239,25 +151,26 @@ impl PyModel {
         Ok((rebuild, (to_state(self.0.model.description()), names, threads, self.0.is_kernels_only)))
     }
 
-    /// The same robot with these quantities as machine code at once, at one state and at many. Arrays of states get
-    /// machine code by themselves as soon as that pays; one state, and `simulate`, only by this method. It is used for
-    /// float64, in the robot's own gravity, with its own parameters, its base at rest, touching nothing; everything
-    /// else is computed as before. `simulate` uses 'forward_dynamics', from one start and, if the torques are a
-    /// function, from many.
+    /// Return an equal robot that computes these quantities by machine code, at one state and at many.
+    ///
+    /// Arrays of states get machine code without this method as soon as that pays; one state and `simulate` do not. The
+    /// code is used for float64, in the robot's own gravity, with its own parameters, its base at rest and no applied
+    /// wrenches; other calls use the kernels. `simulate` uses 'forward_dynamics', from one start, and from several if
+    /// `torque` is a function.
     ///
     /// Parameters
     /// ----------
     /// *quantities : str
     ///     Names of methods that compute a quantity, such as 'inverse_dynamics'.
     /// frame : str, optional
-    ///     Frame of those that are of a frame. Default: the end effector.
+    ///     Frame of the quantities that refer to one. Default: the end effector.
     /// threads : int, optional
-    ///     Largest number of threads for many states, unless a call has its own. Default: all cores.
+    ///     Maximum number of threads for many states, unless a call has its own. Default: all cores.
     ///
     /// Returns
     /// -------
     /// Model
-    ///     Equal to this one. `engine(name)` reports what computes a quantity.
+    ///     Equal to this one. `engine(name)` reports how a quantity is computed.
     ///
     /// Examples
     /// --------
@@ -277,9 +190,11 @@ impl PyModel {
         self.compiled(before.chain(asked).collect(), threads.map(|Threads(count)| count))
     }
 
-    /// The same robot without machine code: arrays are computed state by state, by the kernels of one state, on all
-    /// cores. By default a quantity in arrays becomes machine code as soon as that pays, which changes the last digits
-    /// once; when that is depends on the sizes of this robot's calls alone.
+    /// Return an equal robot that never uses machine code.
+    ///
+    /// Arrays are computed state by state on all cores, and each row equals the result at that one state exactly. By
+    /// default a quantity in arrays becomes machine code as soon as that pays, which changes the last digits once, at a
+    /// moment that depends only on the sizes of this robot's calls.
     ///
     /// Returns
     /// -------
@@ -299,20 +214,20 @@ impl PyModel {
         PyModel(robot)
     }
 
-    /// What computes a quantity in the robot's own environment, as far as calls have decided.
+    /// Report how a quantity is computed in the robot's own environment, as decided by the calls so far.
     ///
     /// Parameters
     /// ----------
     /// quantity : str
     ///     Name of its method.
     /// frame : str, optional
-    ///     Frame of a quantity that is of one. Default: the end effector.
+    ///     Frame of a quantity that refers to one. Default: the end effector.
     ///
     /// Returns
     /// -------
     /// Engine
-    ///     A named tuple: `one` for one state, `many` for arrays of states. Each is such as 'machine code (avx512f),
-    ///     5210 bytes', or 'kernels: ' and why.
+    ///     A named tuple: `one` for one state, `many` for arrays of states. Each reads 'machine code (avx512f), 5210
+    ///     bytes', or 'kernels: ' and the reason.
     ///
     /// Examples
     /// --------

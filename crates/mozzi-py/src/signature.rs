@@ -53,7 +53,7 @@ optional! {
     TipWrench TIP_WRENCH: "tip_wrench", "ArrayLike | None" = "None", "array_like, shape (..., 6), optional",
         "Wrench (m, f) that the end effector applies to the environment, in its own coordinates: N m, N.";
     Gravity GRAVITY: "gravity", "ArrayLike | None" = "None", "array_like, shape (..., 3), optional",
-        "Gravity in the axes of {s}, m/s², the same for all states or one for each. Default: the model's.";
+        "Gravity in the axes of {s}, m/s², for all states or for each. Default: the model's.";
     AppliedWrenches APPLIED_WRENCHES: "applied_wrenches", "Mapping[str, ArrayLike] | None" = "None",
         "dict of str to array_like of shape (..., 6), optional",
         "Wrench (m, f) that each frame applies to the environment, in its own coordinates: N m, N.";
@@ -62,11 +62,11 @@ optional! {
     BaseAcceleration BASE_ACCELERATION: "base_acceleration", "ArrayLike | None" = "None", "array_like, shape (6,), optional",
         "Acceleration (ω̇, v̇) of {s}: rad/s², m/s². Default: none.";
     Parameters PARAMETERS: "parameters", "ArrayLike | None" = "None", "array_like, shape (..., p), optional",
-        "Inertial parameters, in the order and units of `Model.parameters`, the same for all states or some for each. Default: the model's.";
+        "Inertial parameters in the order of `Model.parameters`, for all states or for each. Default: the model's.";
     Out OUT: "out", "Array | None" = "None", "numpy.ndarray, optional",
         "Array in which the result is written.";
     Threads THREADS: "threads", "int | None" = "None", "int, optional",
-        "Largest number of threads for many states. Default: all cores.";
+        "Maximum number of threads for many states. Default: all cores.";
 }
 
 /// `out` of a method with several results.

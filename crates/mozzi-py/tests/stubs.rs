@@ -12,6 +12,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 const BEGIN: &str = "    # The quantities: from here on written by `cargo xtask docs`.\n";
+/// The most characters in a line.
+const WIDE: usize = 120;
+const INDENT: &str = "    ";
 const END: &str = "    # End of the quantities.\n";
 
 const HEAD: &str = "\"\"\"Several results of a quantity, as named tuples. Written by `cargo xtask docs` from the list of quantities.\"\"\"
@@ -38,9 +41,43 @@ fn methods() -> String {
             [_] => "Array",
             _ => class,
         };
-        writeln!(text, "    def {}({arguments}) -> {result}: ...", declaration.name).expect("a String");
+        text += &method(&format!("def {}({arguments}) -> {result}:", declaration.name), declaration.formula);
     }
     text + END
+}
+
+/// A method with its summary, in lines of at most 120 characters.
+fn method(definition: &str, summary: &str) -> String {
+    let mut text = [INDENT, definition].concat();
+    if text.chars().count() > WIDE {
+        let (name, rest) = definition.split_once('(').expect("a method");
+        let (arguments, result) = rest.rsplit_once(')').expect("a method");
+        let mut depth = 0;
+        let ends = |c: char| {
+            depth += i32::from(c == '[') - i32::from(c == ']');
+            c == ',' && depth == 0
+        };
+        text = format!("{INDENT}{name}({}\n{INDENT}){result}", filled(arguments.split_inclusive(ends).map(str::trim)));
+    }
+    let summary = format!("\"\"\"{summary}.\"\"\"");
+    text + &filled(summary.split(' ')) + "\n"
+}
+
+/// Words in lines with the indentation of a method's body; each line begins with a line break.
+fn filled<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    let (mut text, mut width) = (String::new(), WIDE);
+    for word in words {
+        let length = word.chars().count() + 1;
+        if width + length > WIDE {
+            text += &format!("\n{INDENT}{INDENT}");
+            width = 2 * INDENT.len() - 1;
+        } else {
+            text.push(' ');
+        }
+        text += word;
+        width += length;
+    }
+    text
 }
 
 fn tuples() -> String {

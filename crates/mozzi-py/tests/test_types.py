@@ -47,6 +47,28 @@ def test_stubs_say_what_is_compiled(name):
         assert defaults == [p.default for p in real if p.default is not p.empty], member
 
 
+def definitions():
+    """The classes, methods and functions of the stubs, by their paths in the compiled part."""
+    for node in ast.parse((PACKAGE / "_mozzi.pyi").read_text()).body:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            yield node.name, node
+            yield from ((f"{node.name}.{m.name}", m) for m in node.body if isinstance(m, ast.FunctionDef))
+
+
+@pytest.mark.parametrize(("path", "node"), [pytest.param(*found, id=found[0]) for found in definitions()])
+def test_stubs_have_the_summaries_of_what_is_compiled(path, node):
+    owner, _, name = path.rpartition(".")
+    if name.startswith("__") or path.startswith("SupportsRead"):  # Python's own documentation; a protocol of the stubs
+        return
+    member = getattr(getattr(_mozzi, owner) if owner else _mozzi, name)
+    expected = " ".join((inspect.getdoc(member) or "").partition("\n\n")[0].split())
+    assert " ".join((ast.get_docstring(node) or "").split()) == expected
+
+
+def test_lines_of_the_stubs():
+    assert max(map(len, (PACKAGE / "_mozzi.pyi").read_text().splitlines())) <= 120
+
+
 def run(tmp_path, *command):
     # in a folder of its own: the package is found as installed, not as files to be checked for style
     environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent), "PYTHONPATH": str(PACKAGE.parent)}

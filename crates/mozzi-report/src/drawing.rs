@@ -60,8 +60,8 @@ impl Drawing {
         Self::of_file_below(name_or_path, &XacroArguments::default(), meshes, None)
     }
 
-    /// The same with xacro arguments. Meshes may also lie in the folder `mesh_root`, such as one that contains the
-    /// robot's folder and a folder of meshes next to it.
+    /// As [`of_file`](Self::of_file), with xacro arguments and the folder `mesh_root`, which may contain meshes outside
+    /// of the robot's folder, such as in a folder next to it.
     ///
     /// # Errors
     /// As [`of_file`](Self::of_file); [`LoadError::Refused`] if xacro cannot expand the file.

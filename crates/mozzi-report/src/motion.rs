@@ -69,7 +69,7 @@ impl Motion {
         self
     }
 
-    /// The same with the energies of its positions and velocities: 𝒫, and 𝒦 if velocities are known.
+    /// Adds the energies of the positions and velocities: 𝒫, and 𝒦 if velocities are known.
     ///
     /// # Errors
     /// [`Error::Motion`] if the rows are not as long as this robot's.

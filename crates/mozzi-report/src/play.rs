@@ -118,7 +118,7 @@ fn entry(name: &str, file: &str, text: &str, is_embedded: bool) -> Value {
     json!({ "name": name, "file": file, "files": { file: text }, "isEmbedded": is_embedded, "theta": start })
 }
 
-/// Does no option change the embedded robot?
+/// True if no option changes the embedded robot.
 fn is_as_embedded(name: &str, model: &Model) -> bool {
     mozzi_urdf::open(name).is_ok_and(|loaded| loaded.description == *model.description())
 }

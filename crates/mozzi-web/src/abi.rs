@@ -1,8 +1,8 @@
 //! The functions that the WebAssembly exports.
 //!
-//! A call that needs a text reads it from the room that [`web_text`] gives; its answer or error is a text, too, at
-//! [`web_said`]. Arrays of numbers keep their addresses as long as their robot is open. Numbers −1 and null addresses
-//! mean an error. A panic stops the call; its message is at [`web_panic`].
+//! A call reads a text argument from the buffer of [`web_text`]; its result or error is a text at [`web_said`]. Arrays
+//! of numbers keep their addresses as long as their robot is open. The number −1 and null addresses mean an error. A
+//! panic stops the call; its message is at [`web_panic`].
 
 use crate::session::Session;
 use std::cell::RefCell;
@@ -31,7 +31,7 @@ pub extern "C" fn web_text(length: usize) -> *mut u8 {
     })
 }
 
-/// The address of the last call's answer or error.
+/// Address of the last call's result or error, a text.
 #[unsafe(no_mangle)]
 pub extern "C" fn web_said() -> *const u8 {
     DESK.with_borrow(|desk| desk.said.as_ptr())
@@ -55,7 +55,7 @@ pub extern "C" fn web_panic_length() -> usize {
     PANIC.with_borrow(String::len)
 }
 
-/// Opens the robot of a text, whose first `name_length` bytes are the file's name. Returns its number and says
+/// Opens the robot of a text, whose first `name_length` bytes are the file's name. Returns a handle; the text is
 /// [`Robot::about`](crate::Robot::about).
 #[unsafe(no_mangle)]
 pub extern "C" fn web_load(name_length: usize) -> i32 {
@@ -66,7 +66,8 @@ pub extern "C" fn web_load(name_length: usize) -> i32 {
     })
 }
 
-/// Opens the robot of dropped files: see [`Session::open`]. Returns its number and says what the page needs.
+/// Opens the robot of dropped files: see [`Session::open`]. Returns a handle and, as JSON, the data that the page
+/// needs.
 #[cfg(feature = "play")]
 #[unsafe(no_mangle)]
 pub extern "C" fn web_open() -> i32 {
@@ -95,8 +96,8 @@ pub extern "C" fn web_input(robot: usize, input: usize) -> *mut f64 {
     answered(null_mut(), |session, _| Ok((session.robot(robot)?.input(input)?.as_mut_ptr(), String::new())))
 }
 
-/// Prepares the request in the text, such as `{"quantity": "body_jacobian", "frame": "tool0"}`. Returns its number and
-/// says its inputs and outputs.
+/// Prepares the request in the text, such as `{"quantity": "body_jacobian", "frame": "tool0"}`. Returns a handle and,
+/// as JSON, the request's inputs and outputs.
 #[unsafe(no_mangle)]
 pub extern "C" fn web_prepare(robot: usize) -> i32 {
     answered(-1, |session, text| {
@@ -136,7 +137,7 @@ pub extern "C" fn web_parameters(robot: usize) -> i32 {
     })
 }
 
-/// Answers a call by what the text asks for.
+/// Runs a call on the text argument, and stores its result or error as text.
 fn answered<T>(failed: T, call: impl FnOnce(&mut Session, &str) -> Result<(T, String), String>) -> T {
     DESK.with_borrow_mut(|desk| {
         let text = std::mem::take(&mut desk.text);

@@ -3,8 +3,8 @@
 use mozzi::model::description::JointKind;
 use mozzi::{FrameId, Model, SpatialInertia, Vec3};
 
-/// Of body 0, the base, and of body k, the k-th moving link, in the order of [`Model::moving_joints`]: everything in
-/// the frame of its link in the file.
+/// The drawn bodies: body 0, the base, and body k, the k-th moving link, in the order of [`Model::moving_joints`]. All
+/// data are in the frame of the body's link in the file.
 #[derive(Debug)]
 pub struct Bodies {
     pub names: Vec<String>,

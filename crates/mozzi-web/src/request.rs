@@ -19,9 +19,9 @@ pub struct Request {
 
 #[derive(Debug)]
 pub enum Kind {
-    /// Of [`LIST`].
+    /// A quantity from [`LIST`].
     Quantity(Asked),
-    /// Of [`drawn::LIST`].
+    /// A drawn quantity from [`drawn::LIST`].
     Drawn(&'static Drawn, Option<FrameId>),
 }
 
@@ -58,7 +58,7 @@ impl Asked {
 const KEYS: [&str; 5] = ["quantity", "frame", "coordinates", "rows", "about"];
 
 impl Request {
-    /// Of `{"quantity": NAME}`, with `frame`, a task's `rows` and `coordinates` ("body" or "space"), and the point
+    /// Reads `{"quantity": NAME}`, with `frame`, a task's `rows` and `coordinates` ("body" or "space"), and the point
     /// `about` if the quantity refers to them.
     pub fn parse(text: &str, model: &Model) -> Result<Self, String> {
         let value: Value = serde_json::from_str(text).map_err(|error| format!("the request is not JSON: {error}"))?;

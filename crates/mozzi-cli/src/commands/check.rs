@@ -19,7 +19,7 @@ pub struct CheckArguments {
     /// or one log in SARIF 2.1.0
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// The same as --format json
+    /// Short for --format json
     #[arg(long, conflicts_with = "format")]
     json: bool,
     /// Propose repairs of a URDF's numbers, each with its reason and its effect on M: an inertia with a power of ten

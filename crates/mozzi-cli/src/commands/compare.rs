@@ -35,7 +35,7 @@ pub struct CompareArguments {
     /// Seed of the random states
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// A library that has not answered by then is ended, and counts as one without an answer
+    /// Time limit for each library; a library that exceeds it is stopped and counts as one without a result
     #[arg(long, value_name = "SECONDS", default_value = "60", allow_hyphen_values = true)]
     time_limit: String,
     /// Print one JSON object instead of text

@@ -20,15 +20,15 @@ pub struct ConvertArguments {
     #[arg(value_name = "IN")]
     input: String,
     /// Output file; its ending chooses the format: .urdf, .sdf, .xml (MJCF), .json (links, joints, the book's lists),
-    /// .py (lists for NumPy). From URDF to URDF the text is kept, with its visuals, comments and unknown elements. What
-    /// a format cannot express is told, a line for each; --strict refuses it
+    /// .py (lists for NumPy). From URDF to URDF the text is kept, with its visuals, comments and unknown elements. Each
+    /// part that a format cannot express is reported on its own line; --strict makes it an error
     #[arg(value_name = "OUT")]
     output: String,
     /// Allow OUT to be the file IN, which is overwritten
     #[arg(long)]
     in_place: bool,
-    /// Leave out of a URDF what other readers ignore (armature, springs); with --strict, what it cannot express, too
-    /// (gravity, rotors, constraints)
+    /// Leave out elements of a URDF that other readers ignore (armature, springs); with --strict, also those that URDF
+    /// cannot express (gravity, rotors, constraints)
     #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
     leave_out: Vec<LeftOut>,
     #[command(flatten)]

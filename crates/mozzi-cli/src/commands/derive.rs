@@ -26,10 +26,10 @@ pub struct DeriveArguments {
     /// (friction and springs), all, none [default: all up to three moving links, else none]
     #[arg(long, value_name = "KIND,…", value_parser = symbols)]
     symbols: Option<Symbols>,
-    /// Which equal numbers of one kind are one symbol
+    /// Equal numbers of one kind that share a symbol
     #[arg(long, value_name = "WHERE", default_value = "none", value_parser = equal())]
     equal: Equal,
-    /// How sums are grouped
+    /// Grouping of sums
     #[arg(long, value_name = "HOW", default_value = "shortest", value_parser = collect())]
     collect: Collect,
     /// Name sub-expressions that occur more than once
@@ -68,9 +68,9 @@ fn language() -> impl TypedValueParser<Value = Language> {
 
 fn equal() -> impl TypedValueParser<Value = Equal> {
     one_of([
-        ("none", "Each number of the file is a symbol", Equal::Separate),
-        ("link", "Those of one link", Equal::OfLink),
-        ("robot", "Those of the robot", Equal::OfRobot),
+        ("none", "Each number of the file is a symbol of its own", Equal::Separate),
+        ("link", "Equal numbers of one link share a symbol", Equal::OfLink),
+        ("robot", "Equal numbers of the robot share a symbol", Equal::OfRobot),
     ])
 }
 

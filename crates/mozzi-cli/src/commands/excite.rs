@@ -31,7 +31,7 @@ pub struct ExciteArguments {
     /// Harmonics of the Fourier series
     #[arg(long, value_name = "COUNT", default_value = "5")]
     harmonics: usize,
-    /// What is optimized
+    /// Optimality criterion
     #[arg(long, value_name = "GOAL", default_value = "log-det")]
     goal: GoalArgument,
     /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's, else 1 rad/s]
@@ -110,7 +110,7 @@ pub fn run(arguments: &ExciteArguments) -> Result<String> {
         )));
     }
     interrupt::listen();
-    let found = excite(&model, &options, &interrupt::asked)?;
+    let found = excite(&model, &options, &interrupt::is_requested)?;
     if let Some(file) = &arguments.out {
         let text = rows(&model, &found, options.duration, step)?.text();
         if file == "-" {

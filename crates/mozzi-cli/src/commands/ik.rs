@@ -51,10 +51,10 @@ pub struct IkArguments {
     /// Tolerance on the distance to the goal, m
     #[arg(long, value_name = "M", default_value = "1e-8", allow_hyphen_values = true)]
     distance: String,
-    /// Largest number of iterations per start
+    /// Maximum number of iterations per start
     #[arg(long, value_name = "K", default_value_t = Options::default().iterations)]
     iterations: usize,
-    /// Largest number of starts: the guess, then random positions
+    /// Maximum number of starts: the guess, then random positions
     #[arg(long, value_name = "K", default_value_t = Options::default().starts)]
     starts: usize,
     /// Seed of the random positions
@@ -135,7 +135,7 @@ impl IkArguments {
         let (progress, begin) = (Progress::new("inverse kinematics", poses.len(), "poses"), Instant::now());
         let (mut theta, mut numbers, mut missed) = (Vec::new(), [const { Vec::new() }; 5], Vec::new());
         for (row, (line, T)) in poses.iter().enumerate() {
-            if interrupt::asked() {
+            if interrupt::is_requested() {
                 break;
             }
             let (positions, residual, starts, iterations) = match solver.solve_with(Goal::Pose(*T), guess, secondary) {

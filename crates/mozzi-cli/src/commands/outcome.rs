@@ -35,7 +35,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Did a condition end the motion?
+    /// True if a condition ended the motion.
     pub fn is_ended(&self) -> bool {
         self.events.last().is_some_and(|event| event.stop)
     }

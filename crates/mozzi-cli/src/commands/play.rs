@@ -27,7 +27,7 @@ pub struct PlayArguments {
     start: StartArguments,
     #[command(flatten)]
     meshes: MeshArguments,
-    /// A lesson beside its robot, by its section of Modern Robotics: 8.1 to 8.7
+    /// Show a lesson next to its robot: a section of Modern Robotics, 8.1 to 8.7
     #[arg(long, value_name = "SECTION")]
     lesson: Option<String>,
     /// Write the page to a file instead of serving it

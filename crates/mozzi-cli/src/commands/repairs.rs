@@ -1,4 +1,4 @@
-//! `mozzi check --fix` and `--estimate-inertia`: proposals for a URDF's numbers, printed, and applied if asked.
+//! `mozzi check --fix` and `--estimate-inertia`: proposals for a URDF's numbers, printed, and applied on request.
 
 use super::check::CheckArguments;
 use crate::failure::{self, Failure, Result};

@@ -119,7 +119,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
             page(&model, &outcome, file) + &said
         }
     };
-    if outcome.motion.complete || outcome.is_ended() || !interrupt::asked() {
+    if outcome.motion.complete || outcome.is_ended() || !interrupt::is_requested() {
         return Ok(text);
     }
     let last = outcome.motion.last().t;
@@ -348,7 +348,7 @@ impl SimulateArguments {
         let mut recorder = (&mut log, (&mut kept, (&mut account, tracking)));
         let ending = simulation.stream(model, theta, dtheta, input, &mut recorder, |t| {
             progress.at((t / options.duration * options.steps as f64) as usize);
-            if interrupt::asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if interrupt::is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         drop(progress);
         log.map(log::Log::finish).transpose()?;

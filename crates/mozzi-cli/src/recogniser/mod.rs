@@ -91,7 +91,7 @@ impl Header {
     }
 }
 
-/// What the caller knows.
+/// The caller's knowledge about a table.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Request<'r> {
     /// The log's names of joints in the robot's order, which replace the robot's.
@@ -127,7 +127,7 @@ pub struct Recognised {
     groups: [Option<Vec<Option<Column>>>; GROUPS.len()],
     wrenches: Vec<wrench::Wrench>,
     targets: Option<Vec<Option<Column>>>,
-    /// What was converted, preferred or left out.
+    /// Notes about columns that were converted, preferred or left out.
     pub notes: Vec<String>,
     /// Each column with its meaning.
     pub rows: Vec<Row>,

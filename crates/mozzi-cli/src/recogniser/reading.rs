@@ -1,4 +1,4 @@
-//! What one column's name says: quantity, origin, unit, and which entry.
+//! The reading of one column's name: quantity, origin, unit, and entry.
 
 use super::unit::{self, Dimension, Unit};
 use super::word::{DDTHETA, DTHETA, Origin, TAU, THETA, Word, word, words};

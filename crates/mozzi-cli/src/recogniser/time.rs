@@ -14,7 +14,7 @@ pub enum Time {
     Pair { seconds: usize, rest: usize, factor: f64 },
 }
 
-/// What a name says about time.
+/// The part of time in a column's name.
 #[derive(Clone, Debug, PartialEq)]
 enum Part {
     Whole(Option<f64>),
@@ -188,7 +188,7 @@ impl Time {
         }
     }
 
-    /// The unit, as far as the name says it.
+    /// The unit, if the name contains it.
     pub fn unit(self) -> &'static str {
         match self {
             Time::Pair { .. } => "s",

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// What a unit measures.
+/// The dimension of a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     Time,

@@ -23,7 +23,7 @@ pub enum Word {
     Origin(Origin),
     Motor,
     Link,
-    /// A word that says nothing: `joint_position`, `joint_states`.
+    /// A word without information: `joint_position`, `joint_states`.
     Filler,
     Number(usize),
     /// The name of something else, such as a tool's force or an error.

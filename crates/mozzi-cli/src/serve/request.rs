@@ -1,4 +1,4 @@
-//! An HTTP request: its head, and the answer.
+//! An HTTP request: its head, and the response.
 
 use std::io::{ErrorKind, Result};
 

@@ -7,7 +7,7 @@ use crate::recogniser::unit;
 /// Lines that are looked at.
 const MOST: usize = 60;
 
-/// What stands between columns.
+/// The separator of columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     Byte(u8),

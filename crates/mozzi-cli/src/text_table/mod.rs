@@ -125,7 +125,7 @@ impl TextTable {
     }
 }
 
-/// What programs write where there is no number.
+/// True for the texts that programs write for a missing number.
 fn is_missing(cell: &str) -> bool {
     ["", "nan", "null", "none", "na", "n/a", "-", "--", "#n/a"].contains(&cell.trim().to_lowercase().as_str())
 }

@@ -39,7 +39,7 @@ impl Pattern {
     }
 }
 
-/// The equations at random states, stacked: to tell which combinations some motion can determine.
+/// The equations at random states, stacked; their rank shows which combinations some motion can determine.
 ///
 /// # Errors
 /// [`Error::Model`].

@@ -14,7 +14,7 @@ const STEPS: usize = 200;
 /// A linear bound: Σ a x > least.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// What it is, for messages.
+    /// Name for messages.
     pub name: String,
     /// Unknowns and their factors.
     pub terms: Vec<(usize, f64)>,
@@ -33,7 +33,7 @@ pub struct Problem {
     pub positive: Vec<usize>,
     /// Unknowns of either sign, of which the robot has the positive part.
     pub split: Vec<usize>,
-    /// Unknowns that are 0: no motion tells them from others.
+    /// Unknowns that are fixed at 0, because no motion separates them from others.
     pub pinned: Vec<usize>,
     /// Further bounds.
     pub bounds: Vec<Bound>,
@@ -48,7 +48,7 @@ pub struct Problem {
 pub struct Optimum {
     /// The unknowns, of a robot that can exist.
     pub x: Vec<f64>,
-    /// What predictions contain beyond the robot: friction with memory or that falls with speed, a delay.
+    /// Additional parts of the unknowns in predictions: friction with memory or that falls with speed, a delay.
     pub apparent: Vec<f64>,
     /// Standard deviations from the noise alone, for one independent sample: the prior is held fixed.
     pub deviations: Vec<f64>,
@@ -70,7 +70,7 @@ impl Optimum {
 }
 
 impl Problem {
-    /// The same problem for a robot without anything apparent.
+    /// The problem without apparent unknowns, for the robot alone.
     pub fn of_robot(&self) -> Problem {
         let positive = self.positive.iter().chain(&self.split).copied().collect();
         Problem { positive, split: Vec::new(), ..self.clone() }
@@ -82,7 +82,7 @@ impl Problem {
     ///
     /// over links with pseudo-inertias Jᵢ and positive unknowns f, relative to the size that matters to the data. Jᵢ is
     /// linear in x, so the problem is convex and has one optimum. Unknowns are whitened, J = C W Cᵀ with J₀ = C Cᵀ; γ
-    /// decreases from 100 by decades, each solution the start of the next. `stop` is asked before each step.
+    /// decreases from 100 by decades, each solution the start of the next. `stop` is polled before each step.
     ///
     /// # Errors
     /// [`Error::Infeasible`] if a bound excludes every start; [`Error::NotExciting`] if an unknown has neither data nor
@@ -199,7 +199,7 @@ impl<'p> Newton<'p> {
         (self.bounds[b].dot(y) - self.problem.bounds[b].least) / self.problem.bounds[b].scale
     }
 
-    /// Are all bodies and positive unknowns inside their cones?
+    /// True if all bodies and positive unknowns are inside their cones.
     fn is_inside(&self, y: &DVector<f64>) -> bool {
         self.problem.positive.iter().all(|&k| y[k] > 0.0)
             && self.problem.bodies.iter().all(|(first, ..)| self.body(y, *first).cholesky().is_some())

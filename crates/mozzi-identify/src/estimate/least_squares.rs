@@ -168,7 +168,7 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
-    /// Of a triangle.
+    /// Decomposes a triangle.
     pub fn new(triangle: &Triangle) -> Self {
         let P = triangle.unknowns();
         let mut R = triangle.R.view((0, 0), (P, P)).clone_owned();

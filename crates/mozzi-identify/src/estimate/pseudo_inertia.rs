@@ -59,7 +59,7 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// Of ten parameters.
+    /// The pseudo-inertia of ten inertial parameters.
     ///
     /// # Errors
     /// [`Error::BadOption`] if they are not finite.

@@ -4,8 +4,8 @@
 const MEMORY: usize = 12;
 
 /// Minimizes `f`, which returns its value and gradient, from `x`; the first step is at most `first` long. Ends after
-/// `iterations`, if the value falls by less
-/// than `tolerance` of itself ten times in a row, or if `stop` says so. Returns the least value.
+/// `iterations`, if the value falls by less than `tolerance` of itself ten times in a row, or when `stop` returns true.
+/// Returns the least value.
 pub fn minimize(
     x: &mut Vec<f64>,
     iterations: usize,

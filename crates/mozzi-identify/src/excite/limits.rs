@@ -1,4 +1,4 @@
-//! What a motion must not do.
+//! Limits of exciting motions: joints, torques, collisions.
 
 use mozzi::{FrameId, Model, Vec3, Wrench};
 
@@ -98,7 +98,7 @@ impl MotionLimits {
         sum
     }
 
-    /// The same of boxes and spheres; distances relative to 10 cm.
+    /// The penalty of boxes and spheres; distances are relative to 10 cm.
     ///
     /// # Errors
     /// [`mozzi::Error`] for a frame of another model.

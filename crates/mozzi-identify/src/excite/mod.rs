@@ -17,10 +17,10 @@ use mozzi::random::Random;
 use mozzi::{BaseParameters, Freedom, Model};
 use objective::Objective;
 
-/// What motion is sought.
+/// Options of the search for an exciting motion.
 #[derive(Clone, Debug)]
 pub struct ExciteOptions {
-    /// Its duration, s.
+    /// Duration of the motion, s.
     pub duration: f64,
     /// Harmonics of the Fourier series.
     pub harmonics: usize,
@@ -71,7 +71,7 @@ pub struct Excitation {
     pub coefficients: Vec<f64>,
     /// The condition number of the weighted base regressor with unit columns.
     pub condition: f64,
-    /// The same of the first random motion within the limits, for comparison.
+    /// The condition number of the first random motion within the limits, for comparison.
     pub condition_of_random: f64,
     /// Base parameters: names, the robot's values, and the standard deviations that a log of this motion will give.
     pub parameters: Vec<(String, f64, f64)>,

@@ -1,4 +1,4 @@
-//! How much a motion tells, and its gradient by the motion's coefficients.
+//! Information content of a motion, and its gradient with respect to the coefficients.
 
 use super::{Basis, ExciteOptions, state};
 use crate::Error;
@@ -8,7 +8,7 @@ use mozzi::quantities::{InverseDynamics, InverseDynamicsVjp, Query};
 use mozzi::{BaseParameters, fast};
 use nalgebra::{DMatrix, DVector};
 
-/// What is minimized.
+/// The minimized cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Goal {
     /// −log det of the information YᵀΣ⁻¹Y: the volume of the confidence ellipsoid.

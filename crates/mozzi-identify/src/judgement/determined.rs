@@ -1,4 +1,4 @@
-//! What the data determines: single parameters, or combinations alone.
+//! Parameters, or combinations of parameters, that the data determines.
 
 use crate::Identification;
 use crate::judgement::excitation::Parameter;
@@ -6,7 +6,7 @@ use crate::judgement::excitation::Parameter;
 /// Smaller factors in a combination are rounding.
 const THERE: f64 = 1e-9;
 
-/// What the data says about one unknown.
+/// How well the data determines one unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standing {
     /// The standard deviation, if the data determines the unknown by itself.

@@ -14,13 +14,13 @@ pub struct Parameter {
     pub robot: f64,
     /// By least squares.
     pub least_squares: f64,
-    /// Of bodies that exist.
+    /// The value of the physically consistent estimate.
     pub consistent: f64,
     /// The standard deviation of least squares; infinite if the motion does not determine it.
     pub deviation: f64,
-    /// What one deviation changes in the forces, relative to their root mean square.
+    /// Change of the forces by one standard deviation, relative to their root mean square.
     pub effect: f64,
-    /// What would determine it better, if it is not determined well.
+    /// Advice for a better log, if the parameter is not determined well.
     pub advice: Option<String>,
 }
 
@@ -118,7 +118,7 @@ impl<'c, 'm> Advisor<'c, 'm> {
         Ok(Advisor { columns, joints, accelerated, turning, tilted })
     }
 
-    /// What would determine column k.
+    /// Advice for a log that determines column k.
     fn advice(&self, k: usize) -> String {
         let kind = self.columns.unknowns[k].kind;
         let name = self.columns.unknowns[k].name.rsplit_once('.').map_or("", |(joint, _)| joint);

@@ -1,7 +1,7 @@
 //! How well the robot's file explains one force, and the factor that would make it fit: currents, per mille of a rated
 //! torque, and torques before the gear differ from N m by a factor for each joint.
 
-/// A joint whose factor leaves at most this share of its variance unexplained has a say.
+/// Joints count if their factor leaves at most this share of their variance unexplained.
 const EXPLAINED: f64 = 0.25;
 
 /// Factors between this and its inverse may be the file's own error.
@@ -98,7 +98,7 @@ pub fn is_scale(gains: &[Gain]) -> bool {
     2 * with_say.len() > gains.len() && with_say.iter().all(is_far)
 }
 
-/// What the factors may mean.
+/// An explanation of the factors.
 pub fn text(gains: &[Gain], names: &[&str]) -> String {
     let with_say = || gains.iter().zip(names).filter(|(gain, _)| gain.unexplained < EXPLAINED);
     let list: Vec<String> = with_say().take(8).map(|(gain, name)| format!("{name} {:.4}", gain.factor)).collect();

@@ -1,4 +1,4 @@
-//! What is left of a force after the prediction.
+//! Residual forces after the prediction.
 
 use crate::signals::spectrum::Spectrum;
 use crate::signals::{Samples, derivative};
@@ -23,7 +23,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Of force j of samples and predictions, N × n.
+    /// The residual of force j, from samples and predictions, N × n.
     pub fn new(name: &str, j: usize, n: usize, samples: &Samples, predicted: &[f64]) -> Self {
         let N = samples.count();
         let column = |table: &[f64]| -> Vec<f64> { (0..N).map(|k| table[k * n + j]).collect() };

@@ -5,7 +5,7 @@ use crate::identify::cross_validated;
 use crate::setup::{Limits, Setup};
 use crate::{Choice, Error, Finding, Identification, Kind};
 
-/// An armature is clear above this many standard deviations, and if the data has most of the say.
+/// An armature is clear above this many standard deviations, and if most of its certainty comes from the data.
 const CLEAR: f64 = 3.0;
 
 /// A warning if the armature of every joint is at its bound 0, although forces were taken to be the motors', and if

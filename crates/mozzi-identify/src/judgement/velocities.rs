@@ -19,7 +19,7 @@ const EARLY: f64 = 4e-3;
 /// Joints slower than this share of the fastest one are not compared.
 const SLOW: f64 = 0.02;
 
-/// The same low-pass filter as before the fit runs over all three signals of each joint.
+/// Positions' derivatives, logged velocities and forces of each joint, all through the fit's low-pass filter.
 struct Signals {
     /// Derivatives of positions.
     slopes: Vec<Vec<f64>>,

@@ -44,7 +44,7 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// The same for all n.
+    /// Equal gains for all n velocities.
     pub fn uniform(n: usize, p: f64, d: f64) -> Self {
         Gains { p: vec![p; n], d: vec![d; n] }
     }

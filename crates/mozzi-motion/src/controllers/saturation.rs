@@ -22,7 +22,7 @@ pub struct Overload {
 /// An input whose torques are clamped to the joints' effort limits, or only compared with them. Joints without a limit
 /// are not affected.
 pub struct Saturated<I> {
-    /// What drives the robot, before its limits.
+    /// The input before its limits are applied.
     pub input: I,
     policy: Policy,
     names: Vec<String>,

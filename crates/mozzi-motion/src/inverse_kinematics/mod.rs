@@ -48,7 +48,7 @@ pub struct Solution {
 /// The end of a search: see [`InverseKinematics::search`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// Is the goal reached?
+    /// True if the goal is reached.
     pub is_reached: bool,
     /// The remaining error.
     pub residual: Residual,

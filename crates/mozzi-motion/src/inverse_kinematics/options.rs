@@ -21,7 +21,7 @@ pub struct Options {
     pub seed: u64,
     /// The length that counts as much as a radian, m; default 1.
     pub length: f64,
-    /// Keep the joints within their limits? Default true.
+    /// True to keep the joints within their limits. Default true.
     pub limits: bool,
 }
 

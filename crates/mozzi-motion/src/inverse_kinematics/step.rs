@@ -89,8 +89,8 @@ impl Step {
         }
     }
 
-    /// Holds the joints at a bound that δ would take beyond it; were there any? A ball's columns lose their part along
-    /// n, J ← J(I − nnᵀ), and so does δ = Jᵀy.
+    /// Holds the joints at a bound that δ would take beyond it; returns true if there were any. A ball's columns lose
+    /// their part along n, J ← J(I − nnᵀ), and so does δ = Jᵀy.
     pub fn hold_at_bounds(&mut self, bounds: &Bounds, theta: &[f64], delta: &[f64]) -> bool {
         let mut found = false;
         for (k, place) in bounds.places.iter().enumerate() {

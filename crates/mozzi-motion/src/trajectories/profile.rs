@@ -107,7 +107,7 @@ impl Profile {
         Ok(Profile { times: vec![0.0, duration], pieces: vec![piece] })
     }
 
-    /// The same profile with another duration: ṡ scales with the ratio, s̈ with its square.
+    /// The profile scaled to another duration: ṡ scales with the ratio, s̈ with its square.
     ///
     /// # Errors
     /// [`mozzi::Error::BadArgument`] unless the duration is positive and finite.

@@ -7,7 +7,7 @@ use crate::error::check;
 use mozzi::model::difference;
 use mozzi::{ConfigurationSpace, Model};
 
-/// What a spline does at its ends.
+/// End conditions of a spline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
     /// θ″ = 0: for paths that are timed later, whose θ′ must not vanish.

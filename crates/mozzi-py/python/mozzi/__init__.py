@@ -1,6 +1,7 @@
-"""Dynamics of open-chain robots, in the screw notation of Lynch and Park, *Modern Robotics*.
+"""Robot dynamics in the screw notation of Lynch and Park, *Modern Robotics*.
 
-Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. What the robot applies to the environment is positive.
+Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. Forces of the robot on the environment are
+positive.
 """
 
 from . import _quantities, controllers, conventions, models, modern_robotics, trajectories

@@ -10,19 +10,22 @@ from ._mozzi import Model, _compare
 
 
 class Comparison:
-    """The result of ``mozzi.compare``; ``print`` shows it as a report.
+    """Result of ``mozzi.compare``; ``print`` shows it as a report.
 
     Attributes
     ----------
     agrees : bool
-        Whether at least one library computed results, and all of them agree.
+        True if at least one library computed results, and all of them agree.
     explained : bool
-        Whether at least one library computed results, and every difference is explained.
+        True if at least one library computed results, and every difference is explained.
     refused : bool
-        Whether mozzi refuses the file; the report then shows whether the other libraries load it.
+        True if mozzi refuses the file; the report then shows whether the other libraries load it.
+    model : str
+        Name of the robot.
     libraries : dict
-        For each library, by its name: its "status" ("agrees", "explained", "unexplained", "refused", "loaded", "not installed" or
-        "no answer"), "version", and under "comparison" the errors and their causes, as in ``mozzi compare --json``.
+        For each library, by its name: its "status" ("agrees", "explained", "unexplained", "refused", "loaded",
+        "not installed" or "no answer"), "version", and under "comparison" the errors and their causes, as in
+        ``mozzi compare --json``.
     """
 
     def __init__(self, text: str, report: dict[str, Any], agrees: bool, explained: bool) -> None:
@@ -54,26 +57,27 @@ def compare(
 ) -> Comparison:
     """Compare M, g, h and τ with Pinocchio and MuJoCo on the same file, and explain differences.
 
-    Each library runs in a process of its own. A cause counts only if the difference vanishes with it and returns without it.
+    Each library runs in a process of its own. A cause is reported only if the difference vanishes with it and returns
+    without it.
 
     Parameters
     ----------
     robot : str, path or Model
-        A file of URDF or MJCF, or the name of an embedded robot. A ``Model`` is written as URDF for the other libraries, and refused
-        if URDF cannot express it.
+        A file of URDF or MJCF, or the name of an embedded robot. A ``Model`` is written as URDF for the other
+        libraries, and refused if URDF cannot express it.
     states : int
         Number of random states within the joints' limits.
     seed : int
         Seed of the random states.
     python : str or path, optional
-        Python interpreter with ``pin`` or ``mujoco``; by default this one.
+        Python interpreter with ``pin`` or ``mujoco``. Default: this one.
     policy : {'default', 'strict', 'lenient'}
         How mozzi reads the file.
 
     Returns
     -------
     Comparison
-        ``print`` it.
+        ``print`` shows the report.
 
     Raises
     ------

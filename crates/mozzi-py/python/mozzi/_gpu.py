@@ -15,12 +15,21 @@ __all__ = ["Gpu"]
 
 
 class Gpu:
-    """A robot on a GPU, made by ``Model.to_gpu``. Its methods are the model's quantities, of arrays on the GPU.
+    """A robot on a GPU, made by ``Model.to_gpu``; its methods are the model's quantities, on arrays of the GPU.
 
-    Kernels are compiled at the first use, for float32 or float64 as the arrays are. Results are arrays of the first
-    argument's framework (PyTorch, CuPy, Numba), or those given as ``out``. Nothing waits for the GPU: the kernel runs on
-    ``stream`` (an address), by default the framework's current stream. A state whose mass matrix is singular, or with
-    an angle beyond 8192 rad in float32 or 10⁶ in float64, gives NaN.
+    Kernels are compiled at the first use, for the arrays' float32 or float64. Results are arrays of the first
+    argument's framework (PyTorch, CuPy, Numba), or those given as ``out``. Calls are asynchronous: the kernel runs on
+    ``stream`` (an address), by default the framework's current stream. The results of a state with a singular mass
+    matrix, or with an angle beyond 8192 rad in float32 or 10⁶ rad in float64, are NaN.
+
+    Parameters
+    ----------
+    model : Model
+        The robot.
+    layout : {'rows', 'columns'}
+        Layout of the arrays: (..., n), or (n, N).
+    device : int
+        Number of the device.
     """
 
     def __init__(self, model: "_mozzi.Model", layout: str = "rows", device: int = 0) -> None:
@@ -46,7 +55,28 @@ class Gpu:
         out: Any = None,
         stream: int | None = None,
     ) -> Any:
-        """The quantity's results: one array, or a tuple of arrays."""
+        """Compute a quantity at many states.
+
+        Parameters
+        ----------
+        quantity : str
+            Name of a method of ``Model``.
+        *inputs
+            Its arrays, shapes (..., n) by rows or (n, N) by columns.
+        frame : str, optional
+            Frame of a quantity that refers to one. Default: the end effector.
+        packed : bool
+            True to get the lower triangle of a symmetric matrix, by rows.
+        out : array or sequence of arrays, optional
+            Arrays in which the results are written.
+        stream : int, optional
+            Address of a CUDA stream. Default: the framework's current stream.
+
+        Returns
+        -------
+        array, or tuple of arrays
+            Of the first input's framework.
+        """
         if not inputs:
             raise TypeError(f"{quantity} takes one array or more, found none")
         if _wants_gradient(inputs):
@@ -83,11 +113,11 @@ class Gpu:
         out: Any = None,
         stream: int | None = None,
     ) -> tuple[Any, Any]:
-        """The states of many robots after each ``every`` Runge-Kutta steps, in one kernel: a thread for each robot.
+        """Compute the states of many robots by Runge-Kutta steps in one kernel, a thread for each robot.
 
-        Torques are held over each step: those of ``tau``, plus G(θ_d ⊖ θ, θ̇_d − θ̇) with ``gains`` G and ``target``
-        (θ_d, θ̇_d), of the state at the beginning of the step. Quaternions move on their group, as in `Model.rollout`;
-        θ_d ⊖ θ is `Model.difference`. Joint limits have no effect.
+        Torques are constant over each step: those of ``tau``, plus G(θ_d ⊖ θ, θ̇_d − θ̇) with ``gains`` G and
+        ``target`` (θ_d, θ̇_d), at the state at the beginning of the step. Quaternions move on their group, as in
+        `Model.rollout`; θ_d ⊖ θ is `Model.difference`. Joint limits are ignored.
 
         Parameters
         ----------
@@ -100,13 +130,13 @@ class Gpu:
         steps : int, optional
             K, if ``tau`` is not given.
         every : int
-            A divisor of K.
+            Number of steps between two rows of the result, a divisor of K.
         gains, target : arrays, shapes (n, 2n) and (..., nq + n), by columns (nq + n, N), optional
-            Feedback, the same gains for all robots.
+            Feedback; the gains are shared by all robots.
         out : two arrays, optional
-            The results.
+            Arrays in which the results are written.
         stream : int, optional
-            As of the other methods.
+            Address of a CUDA stream. Default: the framework's current stream.
 
         Returns
         -------
@@ -116,7 +146,7 @@ class Gpu:
         Raises
         ------
         ValueError
-            The robot has constraints, or shapes do not go together.
+            If the robot has constraints, or shapes do not match.
         """
         if (gains is None) != (target is None):
             raise TypeError("gains and target belong together: one is missing")
@@ -216,7 +246,7 @@ def packages() -> list[str]:
 
 
 def _read(x: Any, name: str) -> View:
-    """Where an argument is. PyTorch gives no address of a tensor that requires a gradient, even if none is wanted."""
+    """Address and shape of an argument; PyTorch refuses the address of a tensor that requires a gradient."""
     return view(x.detach() if framework_of(x) == "torch" else x, name)
 
 
@@ -236,7 +266,7 @@ def gradient_of(quantity: str) -> str:
 
 
 def _differentiable(gpu: Gpu, quantity: str, inputs: tuple[Any, ...], frame: str | None, stream: int | None) -> Any:
-    """By PyTorch's autograd: the gradient is the quantity's vector-Jacobian product, a kernel, too."""
+    """Compute a quantity under PyTorch's autograd, with the kernel of its vector-Jacobian product as gradient."""
     autograd = import_module("torch").autograd
     base: Any = autograd.Function
     product, quaternions = gradient_of(quantity), gpu.model._quaternions

@@ -11,7 +11,7 @@ DTYPES = {"<f4": "float32", "<f8": "float64"}
 
 
 class View(NamedTuple):
-    """Where an array is."""
+    """Address, shape and dtype of an array."""
 
     address: int
     shape: tuple[int, ...]

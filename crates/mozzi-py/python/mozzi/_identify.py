@@ -20,18 +20,18 @@ class Forces(NamedTuple):
     t: Array
     """Times, s, shape (N,)."""
     measured: Array
-    """Shape (N, n)."""
+    """Shape (N, n): N m or N."""
     predicted: Array
-    """Shape (N, n)."""
+    """Shape (N, n): N m or N."""
 
 
 class Weighed(NamedTuple):
-    """A payload that was weighed."""
+    """Mass and centre of a payload, from ``only="payload"``."""
 
     frame: str
-    """The frame that carries it."""
+    """The frame that carries the payload."""
     mass: float
-    """kg."""
+    """Mass, kg."""
     deviation: float
     """Standard deviation of the mass, kg."""
     center: tuple[float, float, float]
@@ -39,16 +39,16 @@ class Weighed(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """How well forces are predicted, as ``mozzi identify`` prints first."""
+    """Error of the predicted forces, as ``mozzi identify`` prints it first."""
 
     text: str
-    """One sentence."""
+    """The verdict in one sentence."""
     predicted: Literal["OtherLog", "HeldOut", "LeftOut", "Fitted"]
     """Which samples were predicted."""
     nrms: float
-    """Root mean square over the joints of error over force."""
+    """Root mean square over the joints of error divided by force."""
     of_file: float
-    """That of the robot's file."""
+    """``nrms`` of the robot's file."""
     is_trusted: bool
     """False if the error is above half of the forces."""
     payload: Weighed | None
@@ -56,17 +56,15 @@ class Verdict(NamedTuple):
 
 
 class Identification:
-    """The result of ``mozzi.identify``.
+    """Result of ``mozzi.identify``.
 
     Attributes
     ----------
     model : Model
-        The identified robot: links that can exist, friction, armature.
-    verdict : Verdict
-        How well forces are predicted, and whether the result can be trusted.
+        The identified robot, with physically consistent links, friction and armature.
     report : dict
-        As ``mozzi identify --json``: "verdict", "parameters", "base_parameters", "fitted", "left_out", "held_out", "validations", "residuals",
-        "servos", "findings", "condition".
+        As ``mozzi identify --json``: "verdict", "parameters", "base_parameters", "fitted", "left_out", "held_out",
+        "validations", "residuals", "servos", "findings", "condition".
     forces : list of Forces
         Measured and predicted forces of each log.
     """
@@ -79,7 +77,7 @@ class Identification:
 
     @property
     def verdict(self) -> Verdict:
-        """How well forces are predicted, and whether the result can be trusted."""
+        """Error of the predicted forces, and whether the result can be trusted."""
         found = dict(self.report["verdict"])
         payload = found.pop("payload")
         if payload is not None:
@@ -93,7 +91,7 @@ class Identification:
 
     @property
     def servos(self) -> dict[str, dict[str, float]]:
-        """By joint, the law of its position controller: "stiffness", "damping", "delay", "bias" and "nrms".
+        """Law of each joint's position controller: "stiffness", "damping", "delay", "bias" and "nrms".
 
         Empty unless a log has target positions.
         """
@@ -106,28 +104,34 @@ class Identification:
 
     @property
     def findings(self) -> list[str]:
-        """What was noticed: warnings first."""
+        """Findings in the logs and the fit, warnings first."""
         found = sorted(self.report["findings"], key=lambda entry: entry["level"] != "warning")
         return [f"{entry['level']}: {entry['text']}" for entry in found]
 
     def html(self, path: str | os.PathLike[str]) -> None:
-        """Write the report as one HTML file."""
+        """Write the report as one HTML file.
+
+        Parameters
+        ----------
+        path : path
+            The file to write.
+        """
         Path(path).write_text(self._html, encoding="utf-8")
 
     def write(
         self, source: str | os.PathLike[str], path: str | os.PathLike[str], *, old_values: bool = False
     ) -> list[str]:
-        """Write the robot's file, ``source``, with the identified numbers; other text stays.
+        """Write a copy of the robot's file with the identified numbers; all other text stays.
 
         Parameters
         ----------
         source : path
             The robot's URDF, MJCF or xacro.
         path : path
-            The file that is written; a folder if it is one, which gets every file that changes: numbers may be in
-            included files, and in the YAML files of xacro.
+            The file to write, or a folder for all files that change: numbers may be in included files, and in the
+            YAML files of xacro.
         old_values : bool
-            Keep the old numbers in comments.
+            True to keep the old numbers in comments.
 
         Returns
         -------
@@ -138,7 +142,7 @@ class Identification:
         ------
         ValueError
             The file cannot express the robot, a number of xacro is computed, or several files change and ``path`` is
-            no folder.
+            not a folder.
         """
         text = Path(source).read_text(encoding="utf-8")
         files = _edited_files(str(source), text, self.model, old_values) or [(str(source), text)]
@@ -186,42 +190,43 @@ def identify(
     Parameters
     ----------
     model : Model
-        The robot; its own values are the prior where the data is silent.
+        The robot; its own values are the prior for parameters that the data does not determine.
     logs : mapping or sequence of mappings
-        Arrays "t" (N,), "theta" (N, nq), "tau" (N, n), and "dtheta", "ddtheta" (N, n) if they are known, "target" (N, n) of position controllers; of floating
-        bases also "wrench_FRAME" (N, 6), the measured wrench (m, f) that a frame applies to the environment, in the
-        frame's coordinates. "tau" of floating bases may have the joints' columns alone.
+        Arrays "t" (N,), "theta" (N, nq), "tau" (N, n), and, if they are known, "dtheta", "ddtheta" (N, n) and the
+        "target" (N, n) of position controllers. For floating bases also "wrench_FRAME" (N, 6), the measured wrench
+        (m, f) that a frame applies to the environment, in the frame's coordinates; "tau" may then have the joints'
+        columns alone.
     torque : {'motor', 'link'}
-        Where forces are measured; behind the gear, armature is not estimated.
+        Side of the gear on which forces are measured; armature is not estimated for 'link'.
     only : {'payload', 'friction'}, optional
-        Estimate these alone.
+        Estimate the payload or the friction alone.
     payload : str, optional
-        The frame that carries the payload; by default the end effector.
+        The frame that carries the payload. Default: the end effector.
     cutoff : float, optional
-        Cut-off of the zero-phase filter, Hz; ``inf`` for none; by default five times the velocities' band.
+        Cut-off of the zero-phase filter, Hz; ``inf`` for none. Default: five times the band of the velocities.
     acceleration : {'differences', 'spline'}
-        How accelerations are computed.
+        Method that computes accelerations.
     prior : float
-        Weight of the robot's own values.
+        Weight of the robot's own values for parameters that the data does not determine.
     robust : bool
-        Let large residuals count less.
+        True to reduce the weight of large residuals.
     fit : float
         Part of each log that is fitted, in tenths; the rest is predicted.
     stribeck : float, optional
-        Add Stribeck friction with this velocity.
+        Add Stribeck friction with this velocity, rad/s or m/s.
     width : float
-        Width of Coulomb friction, μ tanh(θ̇/w).
+        Width w of Coulomb friction μ tanh(θ̇/w), rad/s or m/s.
     springs, offsets : bool
-        Estimate springs, and constant forces.
+        True to estimate springs, and constant forces.
     total_mass : (float, float), optional
         The mass of all moving links, kg, and its standard deviation.
     lock : mapping, optional
-        Joints that the logs do not contain, with their positions.
+        Joints that the logs do not contain, with their positions, rad or m.
     trust_log : bool
-        Fit a log that contradicts itself or the robot: signs, units, swapped joints, velocities of another motion. The
-        contradictions are then warnings among ``findings``.
+        True to fit a log that contradicts itself or the robot: signs, units, swapped joints, velocities of another
+        motion. The contradictions are then warnings among ``findings``.
     validate : mapping or sequence of mappings
-        Other logs, whose forces are predicted.
+        Further logs, whose forces are predicted, not fitted.
 
     Returns
     -------
@@ -263,15 +268,15 @@ class Excitation(NamedTuple):
     t: Array
     """Times, s, shape (N,)."""
     theta: Array
-    """Shape (N, n)."""
+    """Shape (N, n): rad or m."""
     dtheta: Array
-    """Shape (N, n)."""
+    """Shape (N, n): rad/s or m/s."""
     ddtheta: Array
-    """Shape (N, n)."""
+    """Shape (N, n): rad/s² or m/s²."""
     condition: float
-    """The condition number of the base regressor with unit columns."""
+    """Condition number of the base regressor with unit columns."""
     condition_of_random: float
-    """The same of a random motion within the same limits."""
+    """Condition number of a random motion within equal limits."""
     parameters: dict[str, tuple[float, float]]
     """Base parameters: the robot's value, and the standard deviation that a log of the motion will give."""
 
@@ -300,13 +305,13 @@ def excite(
     harmonics : int
         Harmonics of the Fourier series.
     velocity, acceleration, torque_limit : array_like, optional
-        Limits, one number or one for each joint; by default the robot's.
+        Limits, one number or one for each joint: rad/s or m/s, rad/s² or m/s², N m or N. Default: the robot's.
     noise : array_like, optional
-        Standard deviation of the forces' noise; by default 1 % of the torque limits.
+        Standard deviation of the forces' noise, N m or N. Default: 1 % of the torque limits.
     rate : float
-        Independent samples per second of the later log.
+        Independent samples per second of the future log.
     torque : {'motor', 'link'}
-        Where forces will be measured.
+        Side of the gear on which forces will be measured.
 
     Returns
     -------

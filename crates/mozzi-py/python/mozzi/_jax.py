@@ -15,8 +15,8 @@ derivative of a row by x has one direction more, and the transpose of a row is a
 are symmetric. So one rule for derivatives and one for transposes serve forward and reverse mode, in any order up to
 two, and no matrix is formed.
 
-All operands have the same leading axes. Directions and gradients are those of the arrays' numbers: of a quaternion all
-four, where the length of the quaternion has no effect.
+All operands have equal leading axes. Directions and gradients are those of the arrays' numbers: all four of a
+quaternion, whose length has no effect.
 """
 
 import functools
@@ -57,7 +57,7 @@ MODELS: dict[int, _mozzi.Model] = {}
 
 
 class Quantity(NamedTuple):
-    """What is computed, of which robot; a constant of a compiled program."""
+    """A quantity of a robot; a constant of a compiled program."""
 
     model: int
     """The robot's number: a hash of its content, the same in every process."""
@@ -67,7 +67,7 @@ class Quantity(NamedTuple):
     inputs: tuple[tuple[str, int], ...]
     outputs: tuple[tuple[int, ...], ...]
     parameters: bool
-    """Are the inertial parameters the last input?"""
+    """True if the inertial parameters are the last input."""
     threads: int
     """0 for all cores."""
 

@@ -1,4 +1,4 @@
-"""Pages in a notebook: a whole HTML page in a frame of its own, which asks the network for nothing."""
+"""Pages in a notebook: a complete HTML page in a frame of its own, without network access."""
 
 import html
 import os
@@ -14,16 +14,28 @@ __all__ = ["Page", "of_motion"]
 
 
 class Page:
-    """An HTML page. A notebook shows it in a frame; ``save`` writes it to a file."""
+    """An HTML page, which a notebook shows in a frame; ``save`` writes it to a file.
+
+    Parameters
+    ----------
+    text : str
+        The page, one complete HTML file.
+    height : int
+        Height of the frame in pixels; its width is that of the notebook.
+    """
 
     def __init__(self, text: str, height: int = 640) -> None:
         self.text = text
-        """The page, one whole HTML file."""
         self.height = height
-        """Of the frame, in pixels; its width is that of the notebook."""
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the page to a file."""
+        """Write the page to a file.
+
+        Parameters
+        ----------
+        path : path
+            The file to write.
+        """
         Path(path).write_text(self.text, encoding="utf-8")
 
     def __repr__(self) -> str:
@@ -38,7 +50,7 @@ class Page:
 
 
 def of_motion(model: "Model", motion: "Trajectory") -> Page:
-    """The page of a motion, as ``Model.report`` writes it, without meshes."""
+    """Return the page of a motion, as ``Model.report`` writes it, without meshes."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "motion.html"
         model.report(path, motion)

@@ -1,4 +1,4 @@
-"""What the functions of mozzi.torch share: tensors as NumPy's arrays, checks, and the models that graphs name."""
+"""Shared functions of mozzi.torch: tensors as NumPy's arrays, checks, and the models that graphs name."""
 
 # mypy: ignore-errors
 # pyright: reportMissingImports=false
@@ -41,7 +41,7 @@ def check(names, x):
 
 
 def check_lengths(names, x, lengths):
-    """Of fake tensors, which the package never sees."""
+    """Check the lengths of fake tensors, which the package never sees."""
     for name, t, length in zip(names, x, lengths):
         if t.dim() == 0 or t.shape[-1] != length:
             raise ValueError(f"{name} has shape {tuple(t.shape)}, expected (..., {length})")

@@ -10,10 +10,11 @@
 >>> bool((bridge.from_configuration(q) == anymal.neutral_configuration).all())
 True
 
-To compare results: ``bridge.force(robot.inverse_dynamics(θ, θ̇, θ̈))`` equals ``pin.rnea(model, data, bridge.configuration(θ),
-bridge.velocity(θ̇), bridge.acceleration(θ̈))``. All methods take leading axes. Six-vectors are angular first in mozzi, (ω, v) and (m, f);
-`linear_first` and `angular_first` exchange the halves. Wrenches are those of the robot on the environment in mozzi, and those
-of the environment on the robot in Pinocchio and MuJoCo: `external` exchanges halves and sign.
+To compare results: ``bridge.force(robot.inverse_dynamics(θ, θ̇, θ̈))`` equals ``pin.rnea(model, data,
+bridge.configuration(θ), bridge.velocity(θ̇), bridge.acceleration(θ̈))``. All methods take leading axes. Six-vectors are
+angular first in mozzi, (ω, v) and (m, f); `linear_first` and `angular_first` exchange the halves. Wrenches act from the
+robot on the environment in mozzi, and from the environment on the robot in Pinocchio and MuJoCo: `external` exchanges
+halves and sign.
 """
 
 from typing import Any, Optional, cast
@@ -28,7 +29,17 @@ __all__ = ["MuJoCo", "Pinocchio", "angular_first", "external", "from_external", 
 
 
 def linear_first(six: Any) -> Any:
-    """(v, ω) of (ω, v), or (f, m) of (m, f), along the last axis."""
+    """Exchange the halves of six-vectors: (v, ω) of (ω, v), or (f, m) of (m, f), along the last axis.
+
+    Parameters
+    ----------
+    six : array_like, shape (..., 6)
+        Twists or wrenches.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 6)
+    """
     six = np.asarray(six)
     if six.shape[-1:] != (6,):
         raise ValueError(f"the six-vector has shape {six.shape}, expected (..., 6)")
@@ -39,8 +50,20 @@ angular_first = linear_first
 
 
 def external(wrench: Any) -> Any:
-    """A wrench (m, f) that a frame applies to the environment as the force (f, m) that the environment applies to it: `pin.Force`'s
-    vector, in the frame's coordinates."""
+    """Convert a wrench (m, f) on the environment to the force (f, m) of the environment on the frame.
+
+    It is `pin.Force`'s vector, in the frame's coordinates. The function is its own inverse.
+
+    Parameters
+    ----------
+    wrench : array_like, shape (..., 6)
+        N m, N.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 6)
+        N, N m.
+    """
     return -linear_first(wrench)
 
 
@@ -48,18 +71,21 @@ from_external = external
 
 
 def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
-    """The conversions to and from Pinocchio, with joints in the order of its URDF reader, or of a `pin.Model` of the same robot.
+    """Make the conversions to and from Pinocchio.
 
     Parameters
     ----------
     robot : Model
+        The robot.
     model : pinocchio.Model, optional
+        Pinocchio's model of the robot, whose joint order is used. Default: the order of Pinocchio's URDF reader.
 
     Returns
     -------
     bridge
-        `configuration(theta)`, `velocity(dtheta)`, `acceleration(ddtheta)`, `force(tau)`, `mass_matrix(M)`, `jacobian(J)` to
-        Pinocchio; `from_configuration(q)`, `from_velocity(v)`, `from_acceleration(a)`, `from_force(tau)`, `from_mass_matrix(M)` back.
+        `configuration(theta)`, `velocity(dtheta)`, `acceleration(ddtheta)`, `force(tau)`, `mass_matrix(M)`,
+        `jacobian(J)` to Pinocchio; `from_configuration(q)`, `from_velocity(v)`, `from_acceleration(a)`,
+        `from_force(tau)`, `from_mass_matrix(M)` back.
     """
     if model is None:
         return _Pinocchio(robot, None)
@@ -70,20 +96,23 @@ def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
 
 
 def MuJoCo(robot: Model, model: Optional[Any] = None) -> _MuJoCo:
-    """The conversions to and from MuJoCo, with joints in mozzi's order, or in that of an `mujoco.MjModel` of the same robot.
+    """Make the conversions to and from MuJoCo.
 
     Parameters
     ----------
     robot : Model
+        The robot.
     model : mujoco.MjModel, optional
+        MuJoCo's model of the robot, whose joint order is used. Default: mozzi's order.
 
     Returns
     -------
     bridge
         `configuration(theta)`, `velocity(theta, dtheta)`, `acceleration(theta, dtheta, ddtheta)`, `force(theta, tau)`,
         `mass_matrix(theta, M)`, `bias_forces(theta, dtheta, M, h)` to MuJoCo; `from_configuration(qpos)`,
-        `from_velocity(qpos, qvel)`, `from_acceleration(qpos, qvel, qacc)`, `from_force(qpos, qfrc)`, `from_mass_matrix(qpos, M)`,
-        `from_bias_forces(qpos, qvel, M, qfrc_bias)` back, with M always mozzi's in the last.
+        `from_velocity(qpos, qvel)`, `from_acceleration(qpos, qvel, qacc)`, `from_force(qpos, qfrc)`,
+        `from_mass_matrix(qpos, M)`, `from_bias_forces(qpos, qvel, M, qfrc_bias)` back; M of the bias forces is
+        mozzi's in both directions.
     """
     if model is None:
         return _MuJoCo(robot, None)

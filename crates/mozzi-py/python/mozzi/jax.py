@@ -10,9 +10,10 @@ leading axes are many states, broadcast by NumPy's rule and computed by one call
 Arrays on the CPU are computed by the package's own library, those on the first NVIDIA GPU by the kernels of
 `Model.to_gpu`, with gradients of inverse and forward dynamics in reverse mode.
 
-Derivatives up to the second order are exact, in both modes, on the CPU. With respect to θ they are derivatives by its nq numbers: a
-quaternion's length has no effect, so that its gradient is tangent to the unit sphere. `tangent_gradient` converts such
-a gradient to n numbers along the velocities, in which the package's own derivatives are; `integrate` is θ ⊕ δ.
+Derivatives up to the second order are exact, in both modes, on the CPU. With respect to θ they are taken with respect
+to its nq numbers: a quaternion's length has no effect, so that its gradient is tangent to the unit sphere.
+`tangent_gradient` converts such a gradient to n numbers along the velocities, as in the package's own derivatives;
+`integrate` is θ ⊕ δ.
 
 `parameters=` replaces the robot's inertial parameters by an array in the order of `Model.parameters`, with respect to
 which results are differentiable: ∂τ/∂π = Y.
@@ -68,7 +69,7 @@ _NAMES = {"theta": "position_names", "gradient": "position_names", "parameters":
 
 
 def _broadcast(names: Sequence[str], arrays: list[Array], lengths: Sequence[int], model: Model) -> list[Array]:
-    """All arguments with the same leading axes."""
+    """Broadcast all arguments to common leading axes."""
     leading: tuple[int, ...] = ()
     for name, x, length in zip(names, arrays, lengths):
         if x.shape[-1:] != (length,):
@@ -111,7 +112,28 @@ def inverse_dynamics(
     parameters: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Array:
-    """τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇), shape (..., n). Its gradient takes one pass over the links."""
+    """Compute τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇); its gradient takes one pass over the links.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    dtheta : array_like, shape (..., n)
+        Velocities: rad/s or m/s.
+    ddtheta : array_like, shape (..., n)
+        Accelerations: rad/s² or m/s².
+    parameters : array_like, shape (..., p), optional
+        Inertial parameters π. Default: the model's.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., n)
+        N m or N.
+    """
     return _compute(model, "inverse_dynamics", [theta, dtheta, ddtheta], None, parameters, threads)
 
 
@@ -124,14 +146,51 @@ def forward_dynamics(
     parameters: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Array:
-    """θ̈ = M⁻¹(τ − c − g − f), shape (..., n). Its gradient takes a solution of Mλ = x and a pass over the links."""
+    """Compute θ̈ = M⁻¹(τ − c − g − f); its gradient takes a solution of Mλ = x and a pass over the links.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    dtheta : array_like, shape (..., n)
+        Velocities: rad/s or m/s.
+    tau : array_like, shape (..., n)
+        Torques: N m or N.
+    parameters : array_like, shape (..., p), optional
+        Inertial parameters π. Default: the model's.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., n)
+        rad/s² or m/s².
+    """
     return _compute(model, "forward_dynamics", [theta, dtheta, tau], None, parameters, threads)
 
 
 def mass_matrix(
     model: Model, theta: ArrayLike, *, parameters: ArrayLike | None = None, threads: int | None = None
 ) -> Array:
-    """M(θ), shape (..., n, n)."""
+    """Compute the mass matrix M(θ).
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    parameters : array_like, shape (..., p), optional
+        Inertial parameters π. Default: the model's.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., n, n)
+    """
     return _compute(model, "mass_matrix", [theta], None, parameters, threads)
 
 
@@ -143,14 +202,50 @@ def velocity_product(
     parameters: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Array:
-    """c(θ, θ̇) = C(θ, θ̇)θ̇, shape (..., n)."""
+    """Compute the Coriolis and centripetal forces c(θ, θ̇) = C(θ, θ̇)θ̇.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    dtheta : array_like, shape (..., n)
+        Velocities: rad/s or m/s.
+    parameters : array_like, shape (..., p), optional
+        Inertial parameters π. Default: the model's.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., n)
+        N m or N.
+    """
     return _compute(model, "velocity_product", [theta, dtheta], None, parameters, threads)
 
 
 def gravity_forces(
     model: Model, theta: ArrayLike, *, parameters: ArrayLike | None = None, threads: int | None = None
 ) -> Array:
-    """g(θ), shape (..., n)."""
+    """Compute the gravity forces g(θ).
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    parameters : array_like, shape (..., p), optional
+        Inertial parameters π. Default: the model's.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., n)
+        N m or N.
+    """
     return _compute(model, "gravity_forces", [theta], None, parameters, threads)
 
 
@@ -162,31 +257,111 @@ def bias_forces(
     parameters: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Array:
-    """h(θ, θ̇) = c + g, shape (..., n)."""
+    """Compute the bias forces h(θ, θ̇) = c + g.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    dtheta : array_like, shape (..., n)
+        Velocities: rad/s or m/s.
+    parameters : array_like, shape (..., p), optional
+        Inertial parameters π. Default: the model's.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., n)
+        N m or N.
+    """
     return _compute(model, "bias_forces", [theta, dtheta], None, parameters, threads)
 
 
 def forward_kinematics(
     model: Model, theta: ArrayLike, frame: str | None = None, *, threads: int | None = None
 ) -> Array:
-    """T_sb(θ) of a frame, by default the end effector, shape (..., 4, 4)."""
+    """Compute the pose T_sb(θ) of a frame in {s}.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    frame : str, optional
+        A link or frame. Default: the end effector.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., 4, 4)
+    """
     return _compute(model, "forward_kinematics", [theta], frame, None, threads)
 
 
 def space_jacobian(model: Model, theta: ArrayLike, frame: str | None = None, *, threads: int | None = None) -> Array:
-    """J_s(θ) of a frame, by default the end effector, shape (..., 6, n), angular rows first."""
+    """Compute the space Jacobian J_s(θ) of a frame, angular rows first.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    frame : str, optional
+        A link or frame. Default: the end effector.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., 6, n)
+    """
     return _compute(model, "space_jacobian", [theta], frame, None, threads)
 
 
 def body_jacobian(model: Model, theta: ArrayLike, frame: str | None = None, *, threads: int | None = None) -> Array:
-    """J_b(θ) of a frame, by default the end effector, shape (..., 6, n), angular rows first."""
+    """Compute the body Jacobian J_b(θ) of a frame, angular rows first.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    frame : str, optional
+        A link or frame. Default: the end effector.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    jax.Array, shape (..., 6, n)
+    """
     return _compute(model, "body_jacobian", [theta], frame, None, threads)
 
 
 def integrate(model: Model, theta: ArrayLike, dtheta: ArrayLike) -> Array:
-    """θ ⊕ θ̇, shape (..., nq): the positions after constant velocities θ̇ for one second.
+    """Compute θ ⊕ θ̇, the positions after constant velocities θ̇ for one second.
 
     `jax.grad(lambda d: f(integrate(model, theta, d)))(jax.numpy.zeros(n))` is the gradient of f along the velocities.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    dtheta : array_like, shape (..., n)
+        Velocities: rad/s or m/s.
+
+    Returns
+    -------
+    jax.Array, shape (..., nq)
     """
     _check(model)
     names, lengths = ("theta", "dtheta"), (model.nq, model.n)
@@ -196,7 +371,21 @@ def integrate(model: Model, theta: ArrayLike, dtheta: ArrayLike) -> Array:
 
 
 def tangent_gradient(model: Model, theta: ArrayLike, gradient: ArrayLike) -> Array:
-    """The gradient along the velocities, shape (..., n), from the gradient by θ's numbers, shape (..., nq)."""
+    """Convert a gradient with respect to θ's numbers to the gradient along the velocities.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    gradient : array_like, shape (..., nq)
+        Gradient with respect to the numbers of θ.
+
+    Returns
+    -------
+    jax.Array, shape (..., n)
+    """
     _check(model)
     names, lengths = ("theta", "gradient"), (model.nq, model.nq)
     theta, gradient = _broadcast(names, _arrays(names, (theta, gradient)), lengths, model)
@@ -205,12 +394,12 @@ def tangent_gradient(model: Model, theta: ArrayLike, gradient: ArrayLike) -> Arr
 
 
 class Rollout(NamedTuple):
-    """The states of N steps."""
+    """The start and the states of N steps: see ``rollout``."""
 
     theta: Array
-    """Shape (..., N + 1, nq)."""
+    """Shape (..., N + 1, nq): rad or m."""
     dtheta: Array
-    """Shape (..., N + 1, n)."""
+    """Shape (..., N + 1, n): rad/s or m/s."""
 
 
 def rollout(
@@ -224,11 +413,34 @@ def rollout(
     parameters: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Rollout:
-    """The states of N steps of `step` seconds from (θ, θ̇), with the torques τ, shape (..., N, n), held over each step.
+    """Compute the states of N steps under torques that are constant over each step.
 
-    `method` is 'rk4', 'euler' or 'semi-implicit-euler', as of `Model.simulate`. Joint limits have no effect. It is a
-    `jax.lax.scan` over `forward_dynamics`, of which each step of 'rk4' takes four; reverse mode keeps the stages of all
-    steps, and `jax.checkpoint` trades them for time.
+    Joint limits are ignored. It is a `jax.lax.scan` over `forward_dynamics`, which 'rk4' calls four times a step;
+    reverse mode keeps the stages of all steps, and `jax.checkpoint` trades this memory for time.
+
+    Parameters
+    ----------
+    model : mozzi.Model
+        The robot.
+    theta : array_like, shape (..., nq)
+        Positions: rad or m.
+    dtheta : array_like, shape (..., n)
+        Velocities: rad/s or m/s.
+    tau : array_like, shape (..., N, n)
+        Torques of each step: N m or N.
+    step : array_like, shape ()
+        The length of a step, s.
+    method : {'rk4', 'euler', 'semi-implicit-euler'}
+        Integration method, as in `Model.simulate`.
+    parameters : array_like, shape (..., p), optional
+        Inertial parameters π. Default: the model's.
+    threads : int, optional
+        Maximum number of threads on the CPU. Default: all cores.
+
+    Returns
+    -------
+    Rollout
+        The start and the state after each step.
     """
     _check(model)
     if method not in ("rk4", "euler", "semi-implicit-euler"):

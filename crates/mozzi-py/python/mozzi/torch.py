@@ -1,4 +1,4 @@
-"""Dynamics of a robot in PyTorch, differentiable by states and by inertial parameters.
+"""Dynamics of a robot in PyTorch, differentiable with respect to states and inertial parameters.
 
 >>> import mozzi, mozzi.torch, torch                                    # doctest: +SKIP
 >>> robot = mozzi.torch.Model(mozzi.models.ur5())                       # doctest: +SKIP
@@ -11,7 +11,7 @@ copied. Leading axes are states and are broadcast. All of `torch.autograd` and `
 these operators are the kernels of `mozzi.Model.to_gpu`: gradients of inverse and forward dynamics and of rollouts, of
 first order, in reverse.
 
-θ has nq numbers. A gradient by a quaternion is that of a function of q/‖q‖: tangent to the sphere.
+θ has nq numbers. A gradient with respect to a quaternion is that of a function of q/‖q‖: tangent to the sphere.
 """
 
 # mypy: ignore-errors
@@ -40,7 +40,7 @@ _PLAIN = (Tensor, torch.nn.Parameter)
 
 
 def _broadcast(x):
-    """The same leading axes for all, by torch, so that gradients are summed over them."""
+    """Broadcast the leading axes of all tensors by torch, so that gradients are summed over them."""
     leading = x[0].shape[:-1]
     for t in x:
         if t.ndim != 1 and t.shape[:-1] != leading or t.ndim == 1 and leading:
@@ -60,7 +60,7 @@ def _value(quantity, x):
 
 
 def _derived(quantity, method, count, of_parameters, tensors):
-    """The same on tensors."""
+    """Compute a derivative of a quantity on tensors."""
     if tensors[0].is_cuda:
         if method != "vjp":
             raise NotImplementedError(
@@ -253,12 +253,12 @@ def _and_parameters(x, parameters):
 
 
 class Model:
-    """A robot, for tensors: quantities of a `mozzi.Model`, differentiable.
+    """A robot whose quantities are differentiable functions of tensors.
 
     Parameters
     ----------
     model : mozzi.Model
-        The robot, with its gravity (`mozzi.Model.with_gravity`); its base is at rest, and it touches nothing.
+        The robot, with its own gravity (`mozzi.Model.with_gravity`), its base at rest and no applied wrenches.
     """
 
     def __init__(self, model: _mozzi.Model) -> None:
@@ -275,29 +275,111 @@ class Model:
     def inverse_dynamics(
         self, theta: Tensor, dtheta: Tensor, ddtheta: Tensor, *, parameters: Tensor | None = None
     ) -> Tensor:
-        """τ (..., n) of θ (..., nq), θ̇ and θ̈ (..., n), and of inertial parameters π (..., p), or the model's."""
+        """Compute τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇).
+
+        Parameters
+        ----------
+        theta : Tensor, shape (..., nq)
+            Positions: rad or m.
+        dtheta : Tensor, shape (..., n)
+            Velocities: rad/s or m/s.
+        ddtheta : Tensor, shape (..., n)
+            Accelerations: rad/s² or m/s².
+        parameters : Tensor, shape (..., p), optional
+            Inertial parameters π. Default: the model's.
+
+        Returns
+        -------
+        Tensor, shape (..., n)
+            N m or N.
+        """
         return _call(self, "inverse_dynamics", _and_parameters((theta, dtheta, ddtheta), parameters))
 
     def forward_dynamics(
         self, theta: Tensor, dtheta: Tensor, tau: Tensor, *, parameters: Tensor | None = None
     ) -> Tensor:
-        """θ̈ (..., n) of θ (..., nq), θ̇ and τ (..., n), and of inertial parameters π (..., p), or the model's."""
+        """Compute θ̈ = M⁻¹(τ − c − g − f).
+
+        Parameters
+        ----------
+        theta : Tensor, shape (..., nq)
+            Positions: rad or m.
+        dtheta : Tensor, shape (..., n)
+            Velocities: rad/s or m/s.
+        tau : Tensor, shape (..., n)
+            Torques: N m or N.
+        parameters : Tensor, shape (..., p), optional
+            Inertial parameters π. Default: the model's.
+
+        Returns
+        -------
+        Tensor, shape (..., n)
+            rad/s² or m/s².
+        """
         return _call(self, "forward_dynamics", _and_parameters((theta, dtheta, tau), parameters))
 
     def mass_matrix(self, theta: Tensor, *, parameters: Tensor | None = None) -> Tensor:
-        """M (..., n, n) of θ (..., nq), and of inertial parameters π (..., p), by default the model's."""
+        """Compute the mass matrix M(θ).
+
+        Parameters
+        ----------
+        theta : Tensor, shape (..., nq)
+            Positions: rad or m.
+        parameters : Tensor, shape (..., p), optional
+            Inertial parameters π. Default: the model's.
+
+        Returns
+        -------
+        Tensor, shape (..., n, n)
+        """
         return _call(self, "mass_matrix", _and_parameters((theta,), parameters))
 
     def forward_kinematics(self, theta: Tensor, frame: str | None = None) -> Tensor:
-        """T (..., 4, 4) of a frame in {s}, by default the end effector's, of θ (..., nq)."""
+        """Compute the pose T of a frame in {s}.
+
+        Parameters
+        ----------
+        theta : Tensor, shape (..., nq)
+            Positions: rad or m.
+        frame : str, optional
+            A link or frame. Default: the end effector.
+
+        Returns
+        -------
+        Tensor, shape (..., 4, 4)
+        """
         return _call(self, "forward_kinematics", (theta,), frame)
 
     def body_jacobian(self, theta: Tensor, frame: str | None = None) -> Tensor:
-        """J_b (..., 6, n) of a frame, by default the end effector, angular rows first, of θ (..., nq)."""
+        """Compute the body Jacobian J_b of a frame, angular rows first.
+
+        Parameters
+        ----------
+        theta : Tensor, shape (..., nq)
+            Positions: rad or m.
+        frame : str, optional
+            A link or frame. Default: the end effector.
+
+        Returns
+        -------
+        Tensor, shape (..., 6, n)
+        """
         return _call(self, "body_jacobian", (theta,), frame)
 
     def space_jacobian(self, theta: Tensor, frame: str | None = None) -> Tensor:
-        """J_s (..., 6, n) of a frame, by default the end effector, angular rows first, of θ (..., nq)."""
+        """Compute the space Jacobian J_s of a frame, angular rows first.
+
+        Parameters
+        ----------
+        theta : Tensor, shape (..., nq)
+            Positions: rad or m.
+        frame : str, optional
+            A link or frame. Default: the end effector.
+
+        Returns
+        -------
+        Tensor, shape (..., 6, n)
+        """
         return _call(self, "space_jacobian", (theta,), frame)
 
     def rollout(
@@ -311,22 +393,27 @@ class Model:
         parameters: Tensor | None = None,
         by_steps: bool = False,
     ) -> tuple[Tensor, Tensor]:
-        """The states of N steps under given torques: θ (..., N + 1, nq) and θ̇ (..., N + 1, n), from the start on.
+        """Compute the states of N steps under torques that are constant over each step.
 
         Parameters
         ----------
         theta, dtheta : Tensor, shapes (..., nq) and (..., n)
             The start.
         tau : Tensor, shape (..., N, n)
-            The torques of each step.
+            The torques of each step: N m or N.
         step : float
             The length of a step, s.
         method : {'rk4', 'semi-implicit-euler', 'euler'}
-            As in `mozzi.Model.rollout`.
+            Integration method, as in `mozzi.Model.rollout`.
         parameters : Tensor, shape (..., p), optional
-            Inertial parameters π. Default: the model's. They take the steps as `by_steps` does.
+            Inertial parameters π; they imply `by_steps`. Default: the model's.
         by_steps : bool
-            Whether each step is an operation of torch: slower, and needed for forward mode and second derivatives.
+            True to make each step an operation of torch: slower, but required for forward mode and second derivatives.
+
+        Returns
+        -------
+        theta, dtheta : Tensor, shapes (..., N + 1, nq) and (..., N + 1, n)
+            The start and the state after each step.
         """
         if parameters is None and not by_steps and not getattr(theta, "is_cuda", False):
             return rollout(self.model, self._contents, float(step), method, theta, dtheta, tau)

@@ -1,9 +1,9 @@
-"""Trajectories: what the joints are to do, and when (Modern Robotics, chapter 9).
+"""Trajectories: desired motions of the joints over time (Modern Robotics, chapter 9).
 
-A ``Path`` is θ(s) for s from 0 to 1: a ``Line`` in the joints' space, a ``Spline`` through via points, or the joints'
-path along a frame's, ``Cartesian``. A ``Profile`` is s(t): cubic, quintic, trapezoidal, or as fast as limits allow
-(``Path.time_optimal``, ``Path.stretched``). Both together are ``Timed``, a ``Reference`` that a controller follows; so
-are a table, ``Recorded``, and positions to hold, ``Hold``.
+A ``Path`` is θ(s) for s from 0 to 1: a ``Line`` in joint space, a ``Spline`` through via points, or a ``Cartesian``
+path of a frame. A ``Profile`` is s(t): cubic, quintic, trapezoidal, or as fast as limits allow (``Path.time_optimal``,
+``Path.stretched``). A ``Reference`` is a motion that a controller follows: a path with a profile, ``Timed``; a table,
+``Recorded``; or constant positions, ``Hold``.
 
 >>> import mozzi
 >>> import numpy as np

@@ -32,7 +32,7 @@ pub struct Argument<'a, T> {
     pub numbers: &'a [T],
 }
 
-/// What an argument must be: the arguments of the quantity, then a direction's changes, then w.
+/// The kind, name and shape that an argument must have: the quantity's arguments, then a direction's changes, then w.
 #[derive(Clone, Copy)]
 struct Expected {
     kind: &'static str,

@@ -117,7 +117,7 @@ pub struct CallFrame {
     attributes: AttributeList,
 }
 
-/// The kind of extension by which the runtime asks, once, for the handler's version.
+/// The kind of extension by which the runtime queries the handler's version, once.
 const METADATA: c_int = 1;
 const SCALAR: c_int = 3;
 const TEXT: c_int = 4;
@@ -187,7 +187,7 @@ pub fn capsule(py: Python<'_>, place: Place) -> PyResult<Bound<'_, PyAny>> {
     }
 }
 
-/// What XLA calls on the CPU. Returns null, or an error.
+/// The handler that XLA calls on the CPU. Returns null, or an error.
 ///
 /// # Safety
 /// The frame is one that the runtime passed.
@@ -196,7 +196,7 @@ unsafe extern "C" fn on_host(frame: *mut CallFrame) -> *mut c_void {
     unsafe { respond(frame, answer) }
 }
 
-/// The same on a GPU.
+/// The handler that XLA calls on a GPU. Returns null, or an error.
 ///
 /// # Safety
 /// The frame is one that the runtime passed.

@@ -21,13 +21,12 @@ type Shapes = Vec<(&'static str, Vec<usize>)>;
 
 #[pymethods]
 impl PyModel {
-    /// Registers the robot for XLA. The number depends on its content alone.
+    /// Registers the robot for XLA; the returned number depends only on its content.
     fn _jax_handle(&self) -> PyResult<i64> {
         registry::register(&self.robot().model).map_err(PyValueError::new_err)
     }
 
-    /// The frame's name, by default the end effector's, empty if the quantity has none; and the quantity's inputs and
-    /// outputs.
+    /// Name of the quantity's frame, empty if it has none, and names and shapes of its inputs and outputs.
     fn _jax_shapes(&self, quantity: &str, frame: Option<&str>) -> PyResult<(String, Shapes, Shapes)> {
         let model = &self.robot().model;
         let is_of_frame = Query::named(quantity).map_err(of_model)?.declaration().of == Of::Frame;
@@ -50,7 +49,7 @@ fn _jax_handler(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     interface::capsule(py, interface::Place::Host)
 }
 
-/// That on an NVIDIA GPU. `packages`: folders in which NVRTC's wheel may be.
+/// XLA's handler on an NVIDIA GPU, as a capsule; `packages` are folders that may contain NVRTC's wheel.
 #[pyfunction]
 fn _jax_gpu_handler(py: Python<'_>, packages: Vec<PathBuf>) -> PyResult<Bound<'_, PyAny>> {
     gpu::PACKAGES.get_or_init(|| packages);

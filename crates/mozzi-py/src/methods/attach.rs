@@ -19,7 +19,7 @@ type Method = unsafe extern "C" fn(
     *mut ffi::PyObject,
 ) -> *mut ffi::PyObject;
 
-/// What Python calls, in the order of the list.
+/// The functions that Python calls, in the order of the list.
 const METHODS: &[Method] = {
     macro_rules! methods {
         ($($Q:ident)*) => { &[$({

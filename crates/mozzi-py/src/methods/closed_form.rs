@@ -61,8 +61,9 @@ pub(super) fn environment<'py>(model: &mozzi::Model, given: [Given<'_, 'py>; 5])
 
 #[pymethods]
 impl PyModel {
-    /// The book's stacked matrices at one state (Modern Robotics, section 8.4), dense and by another way than all other
-    /// methods: to read and to compare.
+    /// Compute the book's stacked matrices at one state (Modern Robotics, section 8.4).
+    ///
+    /// They are dense, and computed by another algorithm than all other methods: to read and to compare.
     ///
     /// Parameters
     /// ----------
@@ -124,15 +125,16 @@ impl PyModel {
         named(py, "ClosedForm", fields)
     }
 
-    /// Inverse dynamics at one state with all that the recursion finds on its way, for the N moving links, base to
-    /// tips.
+    /// Compute inverse dynamics at one state with the recursion's twists, accelerations and wrenches.
+    ///
+    /// They are those of the N moving links, base to tips.
     ///
     /// Parameters
     /// ----------
     /// theta, dtheta, ddtheta : array_like, shapes (nq,), (n,) and (n,)
     ///     Positions, rad or m; velocities, rad/s or m/s; accelerations, rad/s² or m/s².
     /// frame : {'center_of_mass', 'link'}
-    ///     In the book's frames {i}, at the centres of mass, or in the links' own.
+    ///     Frames of the results: the book's frames {i}, at the centres of mass, or the links' own.
     #[doc = environment!()]
     ///
     /// Returns
@@ -186,7 +188,9 @@ impl PyModel {
         named(py, "NewtonEuler", fields)
     }
 
-    /// The combinations π_b = K π of the parameters that forces depend on, under the model's gravity.
+    /// Compute the base parameters π_b = K π, the combinations that determine the joint forces.
+    ///
+    /// They are those under the model's gravity; no motion determines π any further.
     ///
     /// Returns
     /// -------

@@ -11,8 +11,9 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl PyModel {
-    /// The dynamics of the mechanism in the velocities u of these joints, from which the constraints determine all
-    /// others: θ̇ = N u, θ̈ = N u̇ + bias, Nᵀτ = M u̇ + h.
+    /// Reduce the mechanism's dynamics to the velocities u of independent joints.
+    ///
+    /// The constraints determine all other velocities: θ̇ = N u, θ̈ = N u̇ + bias, Nᵀτ = M u̇ + h.
     ///
     /// Parameters
     /// ----------
@@ -21,18 +22,18 @@ impl PyModel {
     /// independent : list of str
     ///     Names of joints, one for each degree of freedom.
     /// tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration : optional
-    ///     As of `closed_form`.
+    ///     The environment, as in `closed_form`.
     ///
     /// Returns
     /// -------
     /// Reduction
-    ///     `independent`, the places of u among the velocities; `N` (n, d); `bias` (n,); `M` (d, d); `h` and `g` (d,),
-    ///     without friction and springs.
+    ///     A named tuple: `independent`, the indices of u among the velocities; `N` (n, d); `bias` (n,); `M` (d, d);
+    ///     `h` and `g` (d,), without friction and springs.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If a joint is not determined by them, or they depend on each other.
+    ///     If the independent joints do not determine a joint, or depend on each other.
     #[pyo3(signature = (theta, dtheta, independent, tip_wrench=None, *, gravity=None, applied_wrenches=None, base_twist=None, base_acceleration=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn reduce<'py>(
@@ -62,8 +63,9 @@ impl PyModel {
         named(py, "Reduction", fields)
     }
 
-    /// The torques of the motors, and λ, of a motion that satisfies the constraints: τ = Mθ̈ + h + f + Aᵀλ, with τ_j =
-    /// 0 where no motor is.
+    /// Compute the motors' torques and the multipliers λ of a motion that satisfies the constraints.
+    ///
+    /// τ = Mθ̈ + h + f + Aᵀλ, with τ_j = 0 for a joint without a motor.
     ///
     /// Parameters
     /// ----------
@@ -72,17 +74,18 @@ impl PyModel {
     /// weights : array_like, shape (n,), optional
     ///     If there are more motors than degrees of freedom, τ has the least Σ w_j τ_j². Default: 1.
     /// tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration : optional
-    ///     As of `closed_form`.
+    ///     The environment, as in `closed_form`.
     ///
     /// Returns
     /// -------
     /// ConstrainedDynamics
-    ///     `ddtheta` and `tau` (n,); `multipliers` λ (m,), of least norm; `wrenches`, as of `constraint_wrenches`.
+    ///     A named tuple: `ddtheta` and `tau` (n,); `multipliers` λ (m,), of least norm; `wrenches`, as from
+    ///     `constraint_wrenches`.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If θ̈ violates a constraint, or a motor is missing, with its joint.
+    ///     If θ̈ violates a constraint, or a motor is missing; the message names the joint.
     #[pyo3(signature = (theta, dtheta, ddtheta, tip_wrench=None, *, weights=None, gravity=None, applied_wrenches=None, base_twist=None, base_acceleration=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn constrained_inverse_dynamics<'py>(
@@ -114,19 +117,19 @@ impl PyModel {
         named(py, "ConstrainedDynamics", fields)
     }
 
-    /// The derivatives of θ̈ and λ of `constrained_forward_dynamics` at one state.
+    /// Compute the derivatives of θ̈ and λ of `constrained_forward_dynamics` at one state.
     ///
     /// Parameters
     /// ----------
     /// theta, dtheta, tau : array_like, shapes (nq,), (n,) and (n,)
     ///     Positions, rad or m; velocities, rad/s or m/s; torques, N m or N.
     /// tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration : optional
-    ///     As of `closed_form`.
+    ///     The environment, as in `closed_form`.
     ///
     /// Returns
     /// -------
     /// ConstrainedForwardDynamicsDerivatives
-    ///     `d_theta`, `d_dtheta`, `d_tau` (n, n) of θ̈; `multipliers_d_theta`, `multipliers_d_dtheta`,
+    ///     A named tuple: `d_theta`, `d_dtheta`, `d_tau` (n, n) of θ̈; `multipliers_d_theta`, `multipliers_d_dtheta`,
     ///     `multipliers_d_tau` (m, n) of λ.
     #[pyo3(signature = (theta, dtheta, tau, tip_wrench=None, *, gravity=None, applied_wrenches=None, base_twist=None, base_acceleration=None))]
     #[allow(clippy::too_many_arguments)] // Python's

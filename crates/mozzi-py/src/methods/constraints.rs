@@ -57,8 +57,9 @@ pub(super) fn wrenches<'py>(py: Python<'py>, list: &[(String, Wrench)]) -> PyRes
 
 #[pymethods]
 impl PyModel {
-    /// With further constraints, which close loops, pin frames or couple joints; forward dynamics and simulation that
-    /// keep them are `constrained_forward_dynamics` and `simulate`.
+    /// Return a copy with further constraints, which close loops, pin frames or couple joints.
+    ///
+    /// `simulate`, `rollout` and `constrained_forward_dynamics` satisfy them; `forward_dynamics` is that of the tree.
     ///
     /// Parameters
     /// ----------
@@ -75,7 +76,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// ValueError
-    ///     For an entry that is wrong, with its place.
+    ///     For an invalid entry; the message contains its place.
     ///
     /// Examples
     /// --------
@@ -110,7 +111,7 @@ impl PyModel {
         Self::built(robot.build())
     }
 
-    /// The tree alone: without constraints, every joint with a motor.
+    /// Return the tree alone: without constraints, every joint with a motor.
     ///
     /// Returns
     /// -------
@@ -122,42 +123,43 @@ impl PyModel {
         Self::built(robot.build())
     }
 
-    /// The constraints, in the form that `with_constraints` takes; anchors have a matrix `T` (4, 4) in their frame.
+    /// Constraints in the form of `with_constraints`; anchors have a matrix `T` (4, 4) in their frame.
     #[getter]
     fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text = constraints::write(self.robot().model.description());
         py.import("json")?.getattr("loads")?.call1((text,))?.get_item("constraints")
     }
 
-    /// The joints that have motors, for `constrained_inverse_dynamics`; None means all.
+    /// Names of the joints that have motors, for `constrained_inverse_dynamics`; None for all.
     #[getter]
     fn motors(&self) -> Option<Vec<&str>> {
         self.robot().model.description().motors.as_deref().map(names)
     }
 
-    /// The names of the constraints' rows: of A, of the multipliers.
+    /// Names of the constraints' rows: those of A and of the multipliers.
     #[getter]
     fn constraint_row_names(&self) -> Vec<String> {
         self.robot().model.constraint_row_names().collect()
     }
 
-    /// Positions near a guess that satisfy the constraints.
+    /// Find positions near a guess that satisfy the constraints.
     ///
     /// Parameters
     /// ----------
     /// guess : array_like, shape (nq,)
-    ///     rad or m.
+    ///     Positions: rad or m.
     /// hold : list of str, optional
     ///     Joints that keep their positions.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (nq,)
+    ///     Positions: rad or m.
     ///
     /// Raises
     /// ------
     /// ValueError
-    ///     If there are none: the constraint that stays open furthest, and by how much.
+    ///     If none are found; the message contains the constraint with the largest residual.
     #[pyo3(signature = (guess, *, hold=None))]
     fn assemble<'py>(
         &self,
@@ -171,20 +173,21 @@ impl PyModel {
         array(py, &[found.len()], found)
     }
 
-    /// Velocities nearest to a guess that satisfy the constraints, A(θ)θ̇ = 0.
+    /// Find the velocities nearest to a guess that satisfy the constraints, A(θ)θ̇ = 0.
     ///
     /// Parameters
     /// ----------
     /// theta : array_like, shape (nq,)
     ///     Positions: rad or m.
     /// guess : array_like, shape (n,)
-    ///     rad/s or m/s.
+    ///     Velocities: rad/s or m/s.
     /// hold : list of str, optional
     ///     Joints that keep their velocities.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (n,)
+    ///     Velocities: rad/s or m/s.
     #[pyo3(signature = (theta, guess, *, hold=None))]
     fn assemble_velocities<'py>(
         &self,
@@ -202,20 +205,21 @@ impl PyModel {
         array(py, &[found.len()], found)
     }
 
-    /// Accelerations nearest to a guess that satisfy the constraints, A(θ)θ̈ + Ȧ(θ, θ̇)θ̇ = 0.
+    /// Find the accelerations nearest to a guess that satisfy the constraints, A(θ)θ̈ + Ȧ(θ, θ̇)θ̇ = 0.
     ///
     /// Parameters
     /// ----------
     /// theta, dtheta : array_like, shapes (nq,) and (n,)
     ///     Positions, rad or m; velocities, rad/s or m/s.
     /// guess : array_like, shape (n,)
-    ///     rad/s² or m/s².
+    ///     Accelerations: rad/s² or m/s².
     /// hold : list of str, optional
     ///     Joints that keep their accelerations.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (n,)
+    ///     Accelerations: rad/s² or m/s².
     #[pyo3(signature = (theta, dtheta, guess, *, hold=None))]
     fn assemble_accelerations<'py>(
         &self,
@@ -233,7 +237,7 @@ impl PyModel {
         array(py, &[found.len()], found)
     }
 
-    /// The rank of the constraints at θ.
+    /// Compute the rank of the constraints at θ.
     ///
     /// Parameters
     /// ----------
@@ -243,7 +247,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// ConstraintRank
-    ///     `rows` m; `rank`; `freedom` n − rank; `redundant`, the names of rows that depend on the others.
+    ///     A named tuple: `rows` m; `rank`; `freedom` n − rank; `redundant`, the names of rows that depend on the
+    ///     others.
     fn constraint_rank<'py>(&self, py: Python<'py>, theta: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let model = &self.robot().model;
         let found = model.constraint_rank(&list("theta", theta, &[model.nq()])?).map_err(of_model)?;
@@ -256,7 +261,7 @@ impl PyModel {
         named(py, "ConstraintRank", fields)
     }
 
-    /// The wrenches of the constraints between frames.
+    /// Compute the wrenches of the constraints between frames, from the multipliers.
     ///
     /// Parameters
     /// ----------

@@ -47,10 +47,10 @@ fn finished<'py, T: Element>(
 
 #[pymethods]
 impl PyModel {
-    /// A quantity and its derivative along a direction, by its program's operations: exact, without a step size.
+    /// Compute a quantity and its derivative along a direction, exactly and without a step size.
     ///
-    /// The derivative is ∂f/∂θ δθ + ∂f/∂θ̇ δθ̇ + … + ∂f/∂π δπ, for any quantity, also for derivatives, whose
-    /// derivatives are second ones.
+    /// The derivative is ∂f/∂θ δθ + ∂f/∂θ̇ δθ̇ + … + ∂f/∂π δπ, for any quantity; for a derivative it is of second
+    /// order.
     ///
     /// Parameters
     /// ----------
@@ -62,15 +62,15 @@ impl PyModel {
     ///     For each input its rate of change along the direction, n numbers; None is zero. That of theta is along the
     ///     velocities: of a floating base a body twist (ω, v), of a ball joint ω.
     /// frame : str, optional
-    ///     A link or frame, if the quantity is of one. Default: its end effector.
+    ///     A link or frame, if the quantity refers to one. Default: the end effector.
     /// tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration : optional
     ///     The environment, as for the quantity's method; it is constant.
     /// parameters : array_like, shape (..., p), optional
-    ///     Inertial parameters, in the order and units of `Model.parameters`. Default: the model's.
+    ///     Inertial parameters in the order of `Model.parameters`. Default: the model's.
     /// parameters_tangent : array_like, shape (..., p), optional
     ///     Their rate of change. Default: zero.
     /// threads : int, optional
-    ///     Largest number of threads for many states. Default: all cores.
+    ///     Maximum number of threads for many states. Default: all cores.
     ///
     /// Returns
     /// -------

@@ -10,7 +10,25 @@ use pyo3::types::PyDict;
 
 #[pymethods]
 impl PyModel {
-    /// With a body of this spatial inertia (6, 6) or mass fixed to a frame.
+    /// Return a copy with a payload fixed to a frame.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame : str
+    ///     A link or frame.
+    /// inertia : float, or array_like of shape (6, 6)
+    ///     Mass of a point at the frame's origin, kg, or spatial inertia in the frame: kg m², kg m, kg.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> ur5 = mozzi.models.ur5()
+    /// >>> round(ur5.with_payload("tool0", 2.0).mass - ur5.mass, 9)
+    /// 2.0
     fn with_payload(&self, frame: &str, inertia: &Bound<'_, PyAny>) -> PyResult<Self> {
         let inertia = match inertia.extract::<f64>() {
             Ok(mass) => SpatialInertia::point_mass(mass, mozzi::Vec3([0.0; 3])),
@@ -22,30 +40,85 @@ impl PyModel {
         Self::built(self.robot().model.with_payload(self.frame(Some(frame))?, inertia))
     }
 
-    /// With a further frame, at T (4, 4) seen from one that is there.
+    /// Return a copy with an additional frame at a pose relative to an existing one.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the new frame.
+    /// on : str
+    ///     The existing frame, to whose link the new one is fixed.
+    /// T : array_like, shape (4, 4)
+    ///     Pose of the new frame in the existing one.
+    ///
+    /// Returns
+    /// -------
+    /// Model
     fn with_frame(&self, name: &str, on: &str, T: &Bound<'_, PyAny>) -> PyResult<Self> {
         let T = pose(Numbers::matrix("T", T, "(4, 4)")?)?;
         Self::built(self.robot().model.with_frame(name, self.frame(Some(on))?, T))
     }
 
-    /// With this frame as its end effector.
+    /// Return a copy with this frame as its end effector, the default of all `frame` arguments.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame : str
+    ///     A link or frame.
+    ///
+    /// Returns
+    /// -------
+    /// Model
     fn with_end_effector(&self, frame: &str) -> PyResult<Self> {
         Self::built(self.robot().model.with_end_effector(self.frame(Some(frame))?))
     }
 
-    /// With this gravity (3,), m/s².
+    /// Return a copy with another gravity.
+    ///
+    /// Parameters
+    /// ----------
+    /// gravity : array_like, shape (3,)
+    ///     In the axes of {s}, m/s².
+    ///
+    /// Returns
+    /// -------
+    /// Model
     fn with_gravity(&self, gravity: &Bound<'_, PyAny>) -> PyResult<Self> {
         Self::built(self.robot().model.with_gravity(Numbers::fixed("gravity", gravity, "(3,): m/s²")?))
     }
 
-    /// With its base floating, or fixed.
+    /// Return a copy with a floating or a fixed base.
+    ///
+    /// Parameters
+    /// ----------
+    /// floating : bool
+    ///     False for a fixed base.
+    ///
+    /// Returns
+    /// -------
+    /// Model
     #[pyo3(signature = (floating=true))]
     fn with_floating_base(&self, floating: bool) -> PyResult<Self> {
         let base = if floating { Base::Floating } else { Base::Fixed };
         Self::built(self.robot().model.with_base(base))
     }
 
-    /// With these joints held at these positions, `{name: position}`.
+    /// Return a copy in which joints are fixed at given positions.
+    ///
+    /// Parameters
+    /// ----------
+    /// positions : dict of str to float
+    ///     Positions by joint name: rad or m.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> mozzi.models.panda().with_locked_joints({"panda_joint3": 0.3}).n
+    /// 7
     fn with_locked_joints(&self, positions: &Bound<'_, PyDict>) -> PyResult<Self> {
         let positions = positions
             .iter()
@@ -55,7 +128,30 @@ impl PyModel {
         Self::built(self.robot().model.with_locked_joints(&positions))
     }
 
-    /// The chain between two frames as a robot of its own.
+    /// Return the chain between two frames as a robot of its own.
+    ///
+    /// Parameters
+    /// ----------
+    /// start : str
+    ///     Frame whose link becomes the base.
+    /// end : str
+    ///     Frame of a descendant, which becomes the end effector.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If `end` is not a descendant of `start`, or a mimic joint or rotor couples the chain to a joint outside of
+    ///     it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> mozzi.models.ur5().sub_chain("base_link", "forearm_link").n
+    /// 3
     fn sub_chain(&self, start: &str, end: &str) -> PyResult<Self> {
         Self::built(self.robot().model.sub_chain(self.frame(Some(start))?, self.frame(Some(end))?))
     }

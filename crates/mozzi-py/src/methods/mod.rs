@@ -1,4 +1,4 @@
-//! Methods of Python's `Model`: the quantities, edits, pages.
+//! Methods of Python's `Model`: files, the quantities, edits, pages.
 
 mod attach;
 mod closed_form;
@@ -7,6 +7,7 @@ mod constraints;
 mod directional;
 mod documentation;
 mod edits;
+mod load;
 mod play;
 mod positions;
 mod properties;

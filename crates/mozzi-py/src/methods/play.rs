@@ -9,18 +9,18 @@ use std::path::PathBuf;
 
 #[pymethods]
 impl PyModel {
-    /// The robot in a page to play with: drag it, push it, let it fall, edit it, and see every quantity change. A
-    /// notebook shows it; `save` writes it to a file for a browser.
+    /// Make an interactive page of the robot: drag it, push it, let it fall, edit it, and watch every quantity.
+    ///
+    /// A notebook shows the page; `save` writes it to a file for a browser.
     ///
     /// Parameters
     /// ----------
     /// shapes : path or str, optional
-    ///     The robot's file, or the name of a robot that mozzi brings along, for its shapes; without it there is a
-    ///     skeleton.
+    ///     The robot's file, or the name of an embedded robot, for its shapes. Default: a skeleton.
     /// meshes : {'visual', 'collision', 'none'}
-    ///     Which meshes of that file go into the page.
+    ///     Meshes of that file to embed in the page.
     /// mesh_root : path, optional
-    ///     A folder above the meshes of that file that lie outside of its own folder and package.
+    ///     A folder above meshes outside of the file's own folder and package; they are embedded as well.
     ///
     /// Returns
     /// -------

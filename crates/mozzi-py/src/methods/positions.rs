@@ -7,20 +7,24 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl PyModel {
-    /// θ ⊕ h θ̇: the positions after h seconds at constant velocities, θ + h θ̇ for joints of one axis, on the group
-    /// for a floating base, balls and free joints, whose quaternions stay unit.
+    /// Compute θ ⊕ h θ̇, the positions after h seconds at constant velocities.
+    ///
+    /// For joints of one axis it is θ + h θ̇; a floating base, balls and free joints move on their group, and their
+    /// quaternions stay unit.
     ///
     /// Parameters
     /// ----------
     /// theta : array_like, shape (nq,)
+    ///     Positions: rad or m.
     /// dtheta : array_like, shape (n,)
-    ///     rad/s or m/s.
+    ///     Velocities: rad/s or m/s.
     /// h : float
-    ///     s.
+    ///     Time, s.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (nq,)
+    ///     Positions: rad or m.
     ///
     /// Raises
     /// ------
@@ -48,16 +52,19 @@ impl PyModel {
         array(py, &[theta.len()], theta)
     }
 
-    /// θ₁ ⊖ θ₀: the constant velocities from θ₀ to θ₁ in one second, by the shorter rotation. The inverse of
-    /// `integrate`.
+    /// Compute θ₁ ⊖ θ₀, the constant velocities from θ₀ to θ₁ in one second; the inverse of `integrate`.
+    ///
+    /// Quaternions turn by the shorter rotation.
     ///
     /// Parameters
     /// ----------
     /// theta0, theta1 : array_like, shape (nq,)
+    ///     Positions: rad or m.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray, shape (n,)
+    ///     Velocities: rad/s or m/s.
     ///
     /// Raises
     /// ------

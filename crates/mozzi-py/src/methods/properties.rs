@@ -14,33 +14,37 @@ impl PyModel {
         &self.robot().model.description().name
     }
 
-    /// Velocities: one of each independent joint, three of a ball, six of a free joint and of a floating base.
+    /// Number of velocities: one of each independent joint, three of a ball, six of a free joint and a floating base.
     #[getter]
     fn n(&self) -> usize {
         self.robot().model.n()
     }
 
-    /// Positions: n, and one more for a floating base, each ball and each free joint: a quaternion has four numbers.
+    /// Number of positions: n, plus one for each quaternion, of a floating base, a ball or a free joint.
     #[getter]
     fn nq(&self) -> usize {
         self.robot().model.nq()
     }
 
-    /// The independent joints, in the order of θ.
+    /// Names of the independent joints, in the order of θ.
     #[getter]
     fn joint_names(&self) -> Vec<&str> {
         self.robot().model.joint_names().collect()
     }
 
-    /// The names of the nq positions: a joint's own name, of a ball `joint.qw` to `joint.qz`, of a free joint
-    /// `joint.qw` to `joint.z`; of a floating base, which comes first, `base.qw` to `base.z`.
+    /// Names of the nq positions: a joint's own name; `joint.qw` and so on for quaternions.
+    ///
+    /// A ball has `joint.qw` to `joint.qz`, a free joint `joint.qw` to `joint.z`, and a floating base, which comes
+    /// first, `base.qw` to `base.z`.
     #[getter]
     fn position_names(&self) -> Vec<&str> {
         self.robot().model.position_names().collect()
     }
 
-    /// The names of the n velocities and forces: a joint's own name, of a ball `joint.wx` to `joint.wz`, of a free
-    /// joint `joint.wx` to `joint.vz`; of a floating base, which comes first, `base.wx` to `base.vz`.
+    /// Names of the n velocities and forces: a joint's own name; `joint.wx` and so on for balls.
+    ///
+    /// A ball has `joint.wx` to `joint.wz`, a free joint `joint.wx` to `joint.vz`, and a floating base, which comes
+    /// first, `base.wx` to `base.vz`.
     #[getter]
     fn velocity_names(&self) -> Vec<&str> {
         self.robot().model.velocity_names().collect()
@@ -54,31 +58,31 @@ impl PyModel {
         turns.map(|place| (place.q, place.j, place.freedom == Freedom::Free)).collect()
     }
 
-    /// The links, in the order of the file.
+    /// Names of the links, in the order of the file.
     #[getter]
     fn link_names(&self) -> Vec<&str> {
         self.robot().model.description().links.iter().map(|link| link.name.as_str()).collect()
     }
 
-    /// The names of all frames: links, and frames that were added.
+    /// Names of all frames: the links, and the frames that were added.
     #[getter]
     fn frames(&self) -> Vec<&str> {
         self.robot().model.frames().map(|(_, name)| name).collect()
     }
 
-    /// The end effector's name; None where it is not obvious.
+    /// Name of the end effector; None if there is no obvious one.
     #[getter]
     fn end_effector(&self) -> Option<&str> {
         self.robot().model.end_effector().ok().map(|frame| self.robot().model.frame_name(frame))
     }
 
-    /// Is the base floating?
+    /// True if the base is floating.
     #[getter]
     fn is_floating(&self) -> bool {
         self.robot().model.is_floating()
     }
 
-    /// The mass of all that moves, kg.
+    /// Total mass of the moving links, kg.
     #[getter]
     fn mass(&self) -> f64 {
         self.robot().model.mass()
@@ -90,7 +94,7 @@ impl PyModel {
         array(py, &[3], self.robot().model.gravity().0)
     }
 
-    /// Lowest and highest position of each joint, shape (joints, 2), infinite where there is none; rad or m.
+    /// Lowest and highest position of each joint, shape (joints, 2), rad or m; infinite without a limit.
     #[getter]
     fn position_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let none = [f64::NEG_INFINITY, f64::INFINITY];
@@ -98,44 +102,52 @@ impl PyModel {
         array(py, &[self.robot().model.joint_names().len(), 2], limits)
     }
 
-    /// Highest speed of each joint, shape (joints,), infinite where there is none; rad/s or m/s.
+    /// Maximum speed of each joint, shape (joints,), rad/s or m/s; infinite without a limit.
     #[getter]
     fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits = self.robot().model.joints().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY));
         array(py, &[self.robot().model.joint_names().len()], limits)
     }
 
-    /// Highest torque or force of each joint, shape (joints,), infinite where there is none; N m or N.
+    /// Maximum torque or force of each joint, shape (joints,), N m or N; infinite without a limit.
     #[getter]
     fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits = self.robot().model.joints().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY));
         array(py, &[self.robot().model.joint_names().len()], limits)
     }
 
-    /// π: ten numbers a body, five a joint. See `regressor`.
+    /// Inertial parameters π: ten numbers a body, five a joint; see `regressor`.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let parameters = self.robot().model.parameters();
         array(py, &[parameters.len()], parameters)
     }
 
-    /// The names of `parameters`.
+    /// Names of `parameters`.
     #[getter]
     fn parameter_names(&self) -> Vec<String> {
         self.robot().model.parameter_names()
     }
 
-    /// All joints at 0, a floating base at {s}.
+    /// Positions with all joints at 0 and a floating base at {s}, shape (nq,).
     #[getter]
     fn neutral_configuration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let theta: Vec<f64> = self.robot().model.neutral_configuration();
         array(py, &[theta.len()], theta)
     }
 
-    /// The book's lists of this robot, over its N moving links, base to tips: `joints`, `links`, `parents`, `M` (N, 4,
-    /// 4) and `M_relative`, `S`, `A` and `B` (6, N), `G` (N, 6, 6), `end_effector` (name and home frame, or None).
+    /// Return the book's lists of this robot: home frames, screw axes and spatial inertias of its N moving links.
     ///
-    /// Raises `ValueError` for a robot with a ball or a free joint, which have no one screw axis.
+    /// Returns
+    /// -------
+    /// ScrewLists
+    ///     A named tuple, base to tips: `joints`, `links`, `parents`, `M` (N, 4, 4) and `M_relative`, `S`, `A` and `B`
+    ///     (6, N), `G` (N, 6, 6), `end_effector` (name and home frame, or None).
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     For a robot with a ball or a free joint, which have no single screw axis.
     fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let lists = self.robot().model.screws().map_err(of_model)?;
         let (poses, axes) = (

@@ -124,31 +124,29 @@ fn touches(model: &mozzi::Model, given: &Bound<'_, PyAny>, motion: &Trajectory) 
 
 #[pymethods]
 impl PyModel {
-    /// The robot, and a motion of it, as one HTML file that needs nothing but a browser.
+    /// Write the robot, and a motion of it, as one HTML file that needs nothing but a browser.
     ///
     /// Parameters
     /// ----------
     /// path : path
-    ///     The file that is written.
+    ///     The file to write.
     /// trajectory : Trajectory, optional
-    ///     What `simulate` gave; without it the page has a slider for each joint.
+    ///     A result of `simulate`. Default: the page has a slider for each joint.
     /// shapes : path or str, optional
-    ///     The robot's file, or the name of a robot that mozzi brings along, for its shapes; without it there is a
-    ///     skeleton.
+    ///     The robot's file, or the name of an embedded robot, for its shapes. Default: a skeleton.
     /// meshes : {'visual', 'collision', 'none'}
-    ///     Which meshes of that file go into the page.
+    ///     Meshes of that file to embed in the page.
     /// mesh_root : path, optional
-    ///     A folder above the meshes of that file that lie outside of its own folder and package; they go into the
-    ///     page, too.
+    ///     A folder above meshes outside of the file's own folder and package; they are embedded as well.
     /// title : str
-    ///     What the motion is, in a few words.
+    ///     A short description of the motion.
     /// rows : int, optional
-    ///     At most so many rows of the motion, at equal times; None for all.
+    ///     Maximum number of rows of the motion, at equal times; None for all.
     ///
     /// Returns
     /// -------
     /// ReportSize
-    ///     `rows` on the page, of `all_rows`, and `bytes` of the file.
+    ///     A named tuple: `rows` on the page, `all_rows` of the motion, and `bytes` of the file.
     ///
     /// Warns
     /// -----

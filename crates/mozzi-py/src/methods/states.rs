@@ -16,7 +16,7 @@ fn tuple(py: Python<'_>, State { time, theta, dtheta }: State) -> PyResult<Bound
 
 #[pymethods]
 impl PyModel {
-    /// The states that the robot's file names, such as MuJoCo's keyframes, `{name: State}` in its order.
+    /// The states that the robot's file names, such as MuJoCo's keyframes: `{name: State}`, in its order.
     #[getter]
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (model, states) = (&self.robot().model, PyDict::new(py));
@@ -26,14 +26,15 @@ impl PyModel {
         Ok(states)
     }
 
-    /// The state in which the robot starts: the one that its file names, such as MuJoCo's `qpos0`; else all joints
-    /// at 0, a floating base at {s}, at rest. A `State`, as of `state`.
+    /// The initial state, a `State`: the one that the file names, such as MuJoCo's `qpos0`, else rest at 0.
+    ///
+    /// Rest at 0 has all joints at 0 and a floating base at {s}.
     #[getter]
     fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         tuple(py, self.robot().model.start())
     }
 
-    /// The state of this name.
+    /// Return the state of this name.
     ///
     /// Parameters
     /// ----------
@@ -48,7 +49,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// ValueError
-    ///     For a name that no state has; the message lists those that there are.
+    ///     For an unknown name; the message lists the known ones.
     ///
     /// Examples
     /// --------
@@ -60,8 +61,22 @@ impl PyModel {
         tuple(py, self.robot().model.state(name).map_err(of_model)?)
     }
 
-    /// With a state of this name, which replaces the one of the same name: theta (nq,), dtheta (n,), by default 0,
-    /// and time in s.
+    /// Return a copy with a named state; it replaces a state of this name.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the state.
+    /// theta : array_like, shape (nq,)
+    ///     Positions: rad or m.
+    /// dtheta : array_like, shape (n,), optional
+    ///     Velocities: rad/s or m/s. Default: 0.
+    /// time : float
+    ///     Time, s.
+    ///
+    /// Returns
+    /// -------
+    /// Model
     #[pyo3(signature = (name, theta, dtheta=None, *, time=0.0))]
     fn with_state(
         &self,
@@ -77,7 +92,16 @@ impl PyModel {
         Self::built(model.with_state(name, &State { time, theta, dtheta }))
     }
 
-    /// With this one of its states as its start.
+    /// Return a copy whose initial state is this one of its states.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     One of `states`.
+    ///
+    /// Returns
+    /// -------
+    /// Model
     fn with_start(&self, name: &str) -> PyResult<Self> {
         Self::built(self.robot().model.with_start(name))
     }

@@ -13,11 +13,12 @@ use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace
 use mozzi_sim::Input;
 use pyo3::prelude::*;
 
-/// A controller: the motors' τ that make a robot follow a reference (Modern Robotics, chapter 11): a `PdGravity`, a
-/// `ComputedTorque`, a `TaskSpace` or an `Impedance`. Called as `controller(t, theta, dtheta)`; `Model.simulate` takes
-/// it as `torque`. Its model may be wrong about the robot that is simulated.
+/// A controller: the motors' τ that make a robot follow a reference (Modern Robotics, chapter 11).
 ///
-/// The errors are e = θ_d ⊖ θ and ė = θ̇_d − θ̇; of a frame X_e = log(T⁻¹T_d) and 𝒱_e = [Ad_{T⁻¹T_d}]𝒱_d − 𝒱, in its
+/// It is a `PdGravity`, a `ComputedTorque`, a `TaskSpace` or an `Impedance`, called as `controller(t, theta, dtheta)`;
+/// `Model.simulate` takes it as `torque`. The controller's model may differ from the simulated robot.
+///
+/// The errors are e = θ_d ⊖ θ and ė = θ̇_d − θ̇; for a frame, X_e = log(T⁻¹T_d) and 𝒱_e = [Ad_{T⁻¹T_d}]𝒱_d − 𝒱, in its
 /// own coordinates.
 #[pyclass(frozen, subclass, name = "Controller", module = "mozzi.controllers")]
 pub struct PyController {
@@ -71,12 +72,12 @@ impl PyController {
 
 #[pymethods]
 impl PyController {
-    /// The motors' τ at one state or at many.
+    /// Compute the motors' τ at one state or at many.
     ///
     /// Parameters
     /// ----------
     /// t : array_like, shape (...)
-    ///     s.
+    ///     Times, s.
     /// theta : array_like, shape (..., nq)
     ///     Positions: rad or m.
     /// dtheta : array_like, shape (..., n)
@@ -109,13 +110,13 @@ impl PyController {
         Ok(tau.into_array())
     }
 
-    /// The robot as the controller believes it to be.
+    /// The controller's model of the robot.
     #[getter]
     fn model(&self, py: Python<'_>) -> Py<PyModel> {
         self.model.clone_ref(py)
     }
 
-    /// What is followed.
+    /// The reference that the controller follows.
     #[getter]
     fn reference(&self, py: Python<'_>) -> Py<PyReference> {
         self.reference.clone_ref(py)
@@ -136,15 +137,15 @@ fn six(name: &'static str, given: &Bound<'_, PyAny>) -> PyResult<[f64; 6]> {
 
 /// PD control with gravity compensation, τ = g(θ) + k(θ − θ₀) + K_p e + K_d ė (Modern Robotics, section 11.4.2).
 ///
-/// It brings the robot to rest where the reference rests, and lags behind a moving one. A floating base and a free
+/// The robot comes to rest where the reference rests, and lags behind a moving reference. A floating base and a free
 /// joint have no motors.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     The robot as the controller believes it to be.
+///     The controller's model of the robot.
 /// reference : Reference
-///     What is followed.
+///     The desired motion.
 /// p, d : array_like, shape (n,) or ()
 ///     K_p, N m/rad or N/m, and K_d, N m s/rad or N s/m, of each velocity, or one for all: not negative.
 ///
@@ -176,18 +177,17 @@ impl PyPdGravity {
     }
 }
 
-/// Computed torque, τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇) (Modern Robotics 11.37), by one inverse
-/// dynamics.
+/// Computed torque, τ = M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇) + f(θ, θ̇) (Modern Robotics 11.37).
 ///
-/// Of a robot that is as modelled ë + K_d ė + K_p e = 0: critically damped with K_p = ω², K_d = 2ω. For robots with a
-/// fixed base.
+/// For an exact model the error obeys ë + K_d ė + K_p e = 0, critically damped with K_p = ω², K_d = 2ω. For robots with
+/// a fixed base; one inverse dynamics a call.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     The robot as the controller believes it to be.
+///     The controller's model of the robot.
 /// reference : Reference
-///     What is followed.
+///     The desired motion.
 /// p, d : array_like, shape (n,) or ()
 ///     K_p, 1/s², and K_d, 1/s, of each velocity, or one for all: not negative.
 ///
@@ -221,18 +221,18 @@ impl PyComputedTorque {
 
 /// Task-space control of a frame, τ = Jᵀ(Λ(a + K_d 𝒱_e + K_p X_e) + η) (Modern Robotics, section 11.4.3).
 ///
-/// Of a robot that is as modelled 𝒱̇_e + K_d 𝒱_e + K_p X_e = 0. The frame follows where the reference of the joints
-/// leads it; the motion that the frame leaves free, of robots with more than six joints, follows the reference by the
-/// gains of the posture.
+/// For an exact model the error obeys 𝒱̇_e + K_d 𝒱_e + K_p X_e = 0. The frame follows the pose that the joints'
+/// reference gives it. If the robot has more than six joints, the motion that the task leaves free follows the
+/// reference with the posture gains.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     The robot as the controller believes it to be, with a fixed base.
+///     The controller's model of the robot, with a fixed base.
 /// reference : Reference
-///     A motion of the joints.
+///     The desired motion of the joints.
 /// frame : str, optional
-///     Default: the end effector.
+///     The controlled frame. Default: the end effector.
 /// p, d : array_like, shape (6,) or ()
 ///     K_p, 1/s², and K_d, 1/s, of each row of (ω, v) in the frame's coordinates, or one for all: not negative.
 /// posture_p, posture_d : array_like, shape (n,) or (), optional
@@ -292,18 +292,17 @@ const POSTURE: f64 = 10.0;
 
 /// Impedance control of a frame, τ = Jᵀ(Λa + η + B𝒱_e + KX_e) (Modern Robotics, section 11.7; Hogan 1985).
 ///
-/// The frame yields as a spring and a damper do, with the robot's own inertia: Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕, the wrench that
-/// it applies to the environment. The motion that the frame leaves free follows the reference by the gains of the
-/// posture.
+/// The frame yields like a spring and a damper, with the robot's own inertia: Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕, the wrench that
+/// it applies to the environment. The motion that the task leaves free follows the reference with the posture gains.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     The robot as the controller believes it to be, with a fixed base.
+///     The controller's model of the robot, with a fixed base.
 /// reference : Reference
-///     A motion of the joints.
+///     The desired motion of the joints.
 /// frame : str, optional
-///     Default: the end effector.
+///     The controlled frame. Default: the end effector.
 /// stiffness, damping : array_like, shape (6,) or ()
 ///     K, N m/rad and N/m, and B, N m s/rad and N s/m, of each row of (ω, v) in the frame's coordinates, or one for
 ///     all: not negative.

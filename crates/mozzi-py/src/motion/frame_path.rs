@@ -27,14 +27,14 @@ pub fn pose_of(name: &'static str, given: &Bound<'_, PyAny>) -> PyResult<SE3> {
     pose(Numbers::matrix(name, given, "(4, 4)")?).map_err(|error| refused(format!("{name}: {error}")))
 }
 
-/// Poses of a frame on its way from one pose to another (Modern Robotics, section 9.2.1).
+/// Interpolate between two poses of a frame (Modern Robotics, section 9.2.1).
 ///
 /// Parameters
 /// ----------
 /// start, goal : array_like, shape (4, 4)
 ///     T₀ and T₁, in any one frame.
 /// s : array_like, shape (...)
-///     Where on the path: 0 to 1.
+///     Places on the path: 0 to 1.
 /// shape : {'screw', 'straight'}
 ///     'screw': T₀e^{[ξ]s} with ξ = log(T₀⁻¹T₁). 'straight': the origin on a straight line, the orientation R₀e^{[ω]s}
 ///     with ω = log(R₀ᵀR₁).

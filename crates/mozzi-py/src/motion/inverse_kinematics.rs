@@ -17,37 +17,37 @@ use std::cell::RefCell;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Inverse kinematics: joint positions θ that place a frame at a desired pose, position or orientation (Modern
-/// Robotics, chapter 6).
+/// Inverse kinematics: joint positions θ that place a frame at a desired pose, position or orientation.
 ///
-/// A step is δ = Jᵀ(JJᵀ + λI)⁻¹e with the body twist e = log(T⁻¹T_d) and the body Jacobian J. A joint at its limit is
-/// held there. A start that makes no progress is abandoned for a random one. An iteration costs O(n).
+/// See Modern Robotics, chapter 6. A step is δ = Jᵀ(JJᵀ + λI)⁻¹e with the body twist e = log(T⁻¹T_d) and the body
+/// Jacobian J. A joint at its limit is held there. A start without progress is replaced by a random one. An iteration
+/// costs O(n).
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     The robot.
 /// frame : str, optional
-///     The frame that is to reach the goal. Default: the end effector.
+///     The frame to be placed. Default: the end effector.
 /// method : {'levenberg-marquardt', 'newton'}
 ///     Damping: λ = ‖e‖²/50, or λ = 0 (Newton-Raphson by the pseudo-inverse).
 /// angle_tolerance, distance_tolerance : float
-///     The largest angle, rad, and distance, m, to the goal that count as reached.
+///     Tolerances on the angle, rad, and on the distance, m, to the goal.
 /// iterations : int
-///     Iterations of one start.
+///     Maximum number of iterations of one start.
 /// starts : int
-///     Starts: the first is the guess, the others are random positions within the limits.
+///     Maximum number of starts: the first is the guess, the others are random positions within the limits.
 /// seed : int
-///     Of the random starts: the same seed finds the same solution.
+///     Seed of the random starts; results are reproducible.
 /// length : float
-///     The length that counts as much as one radian, m.
+///     Length that is weighted like one radian, m.
 /// limits : bool
-///     Keep the joints within their position limits?
+///     True to keep the joints within their position limits.
 ///
 /// Raises
 /// ------
 /// ValueError
-///     For a frame that the robot does not have, and options outside their domain.
+///     For an unknown frame, and for options outside of their domain.
 ///
 /// Examples
 /// --------
@@ -180,13 +180,14 @@ impl PyInverseKinematics {
         Ok(solver)
     }
 
-    /// Joint positions that reach a goal, for one target or for many; many are shared by all cores, unless `minimize`
-    /// is given.
+    /// Find joint positions that reach a goal, for one target or for many.
+    ///
+    /// Many targets are divided among all cores, unless `minimize` is given.
     ///
     /// Parameters
     /// ----------
     /// guess : array_like, shape (..., nq)
-    ///     Where the search starts: rad or m.
+    ///     Positions from which the search starts: rad or m.
     /// pose : array_like, shape (..., 4, 4), optional
     ///     T_sb, the pose of the frame seen from {s}. One of `pose`, `position` and `orientation` is the goal.
     /// position : array_like, shape (..., 3), optional
@@ -194,21 +195,21 @@ impl PyInverseKinematics {
     /// orientation : array_like, shape (..., 3, 3), optional
     ///     R_sb, the frame's orientation in {s}, wherever its origin is.
     /// near : array_like, shape (..., nq), optional
-    ///     Among all solutions, one that minimizes ½‖θ ⊖ near‖² along the null space of the goal.
+    ///     Minimize ½‖θ ⊖ near‖² along the null space of the goal.
     /// minimize : callable, optional
-    ///     Among all solutions, one that minimizes H along the null space of the goal: `minimize(theta)` answers H(θ),
-    ///     a float, and its gradient, shape (n,). Instead of `near`.
+    ///     Minimize H along the null space of the goal: `minimize(theta)` returns H(θ), a float, and its gradient,
+    ///     shape (n,). Instead of `near`.
     /// must_reach : bool
-    ///     Raise `MotionError` if a goal is not reached?
+    ///     True to raise `MotionError` if a goal is not reached.
     /// threads : int, optional
-    ///     Largest number of threads for many targets. Default: all cores.
+    ///     Maximum number of threads for many targets. Default: all cores.
     ///
     /// Returns
     /// -------
     /// Solution
-    ///     A named tuple: `theta`, shape (..., nq), the best positions found; `reached`; the `angle`, rad, and
-    ///     `distance`, m, that are left, None if the goal does not ask for them; `iterations` of all starts; `starts`;
-    ///     `reason`, why a goal was not reached, '' if it was. Of many targets arrays of shape (...).
+    ///     A named tuple: `theta`, shape (..., nq), the best positions found; `reached`; the remaining `angle`, rad,
+    ///     and `distance`, m, None if they are not part of the goal; `iterations` of all starts; `starts`; `reason`,
+    ///     why a goal was not reached, '' if it was. For many targets they are arrays of shape (...).
     ///
     /// Raises
     /// ------
@@ -291,7 +292,7 @@ impl PyInverseKinematics {
         self.model.clone_ref(py)
     }
 
-    /// The frame that is to reach the goal.
+    /// The frame to be placed.
     #[getter]
     fn frame(&self) -> &str {
         self.robot().frame_name(self.frame)

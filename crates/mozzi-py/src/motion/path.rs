@@ -14,8 +14,9 @@ use mozzi::Model;
 use mozzi_motion::trajectories::{Cartesian, Ends, Line, Path, Point, Spline, stretched, time_optimal};
 use pyo3::prelude::*;
 
-/// A path of a robot's joint positions, θ(s) for s from 0 to 1: a `Line`, a `Spline` or a `Cartesian`. A `Profile` runs
-/// through it.
+/// A path of a robot's joint positions, θ(s) for s from 0 to 1: a `Line`, a `Spline` or a `Cartesian`.
+///
+/// A `Profile` s(t) turns it into a motion.
 #[pyclass(frozen, subclass, name = "Path", module = "mozzi.trajectories")]
 pub struct PyPath {
     model: Py<PyModel>,
@@ -78,18 +79,18 @@ pub fn places(s: &Bound<'_, PyAny>) -> PyResult<Instants> {
 
 #[pymethods]
 impl PyPath {
-    /// θ, θ′ and θ″ at one place of the path or at many.
+    /// Evaluate θ, θ′ and θ″ at one place of the path or at many.
     ///
     /// Parameters
     /// ----------
     /// s : array_like, shape (...)
-    ///     Where on the path: 0 to 1.
+    ///     Places on the path: 0 to 1.
     ///
     /// Returns
     /// -------
     /// PathPoint
-    ///     A named tuple: `theta`, shape (..., nq); `slope` θ′ and `curvature` θ″, shape (..., n), the velocity at ṡ =
-    ///     1 and its rate.
+    ///     A named tuple: `theta`, shape (..., nq), rad or m; `slope` θ′ and `curvature` θ″, shape (..., n), the
+    ///     velocity at ṡ = 1 and its rate.
     ///
     /// Examples
     /// --------
@@ -108,7 +109,7 @@ impl PyPath {
         named(py, "PathPoint", places(s)?.rows(py, [model.nq(), model.n(), model.n()], point)?)
     }
 
-    /// The fastest profile through this path under limits, at rest at both ends (Pham and Pham 2018).
+    /// Find the fastest profile through this path under limits, at rest at both ends (Pham and Pham 2018).
     ///
     /// Limits are |θ̇| ≤ velocity, |θ̈| ≤ acceleration, |τ| ≤ torque, with τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + f(θ, θ̇) in
     /// the robot's own gravity.
@@ -119,7 +120,7 @@ impl PyPath {
     ///     Limits of each velocity, or one for all: rad/s or m/s, rad/s² or m/s², N m or N; `numpy.inf` for none.
     ///     Default: the velocity and effort limits of the robot's description, and no limit of acceleration.
     /// intervals : int
-    ///     Equal intervals of s at whose ends the limits hold.
+    ///     Number of equal intervals of s at whose ends the limits hold.
     ///
     /// Returns
     /// -------
@@ -152,7 +153,7 @@ impl PyPath {
         py.detach(|| time_optimal(model, &path, &limits, intervals)).map(PyProfile).map_err(of_motion)
     }
 
-    /// A profile of the same shape in the shortest time that keeps the limits, which are those of `time_optimal`.
+    /// Scale a profile to the shortest duration that keeps the limits of `time_optimal`.
     ///
     /// Parameters
     /// ----------
@@ -161,7 +162,7 @@ impl PyPath {
     /// velocity, acceleration, torque : array_like, shape (n,) or (), optional
     ///     As in `time_optimal`.
     /// samples : int
-    ///     Equal intervals of time at whose ends the limits hold.
+    ///     Number of equal intervals of time at whose ends the limits hold.
     ///
     /// Returns
     /// -------
@@ -195,14 +196,14 @@ impl PyPath {
         py.detach(|| stretched(model, &path, profile, &limits, samples)).map(PyProfile).map_err(of_motion)
     }
 
-    /// The robot.
+    /// The robot that moves along the path.
     #[getter(model)]
     fn python_model(&self, py: Python<'_>) -> Py<PyModel> {
         self.owner(py)
     }
 }
 
-/// The straight line of the joints from θ₀ to θ₁, θ₀ ⊕ s(θ₁ ⊖ θ₀); a floating base moves along a screw.
+/// Straight line of the joints from θ₀ to θ₁, θ₀ ⊕ s(θ₁ ⊖ θ₀); a floating base moves along a screw.
 ///
 /// Parameters
 /// ----------
@@ -237,8 +238,10 @@ impl PyLine {
     }
 }
 
-/// The cubic spline of each joint through via points. Balls, free joints and a floating base go through theirs without
-/// jumps of velocity or acceleration; between two of them they turn the shorter way.
+/// Cubic spline of the joints through via points.
+///
+/// Balls, free joints and a floating base pass through theirs without jumps of velocity or acceleration; between two
+/// via points they turn by the shorter rotation.
 ///
 /// Parameters
 /// ----------
@@ -288,28 +291,27 @@ impl PySpline {
     }
 }
 
-/// The joints' path along a frame's, from its pose at θ₀ to a goal: a spline through solutions of inverse kinematics.
+/// Path of the joints along a frame's path to a goal pose: a spline through solutions of inverse kinematics.
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     The robot.
 /// start : array_like, shape (nq,)
-///     θ₀: rad or m.
+///     θ₀: rad or m. The frame's path starts at its pose there.
 /// goal : array_like, shape (4, 4)
 ///     The frame's pose at the end, T_sb.
 /// frame : str, optional
-///     Default: the end effector.
+///     The frame. Default: the end effector.
 /// shape : {'screw', 'straight'}
 ///     'screw': T₀e^{[ξ]s}, one screw motion. 'straight': the origin on a straight line, the orientation R₀e^{[ω]s}.
 /// tolerance : float
-///     The largest ‖log(T⁻¹T_d)‖ by which the frame may be off its path, rad and m.
+///     Tolerance on ‖log(T⁻¹T_d)‖, the deviation of the frame from its path, rad and m.
 ///
 /// Raises
 /// ------
 /// MotionError
-///     If the path leaves the robot's reach, or the solutions along it jump: at singular positions, or at a joint's
-///     limit.
+///     If the path leaves the robot's reach, or the solutions along it jump, at a singular position or a joint limit.
 ///
 /// Examples
 /// --------
@@ -324,10 +326,10 @@ impl PySpline {
 #[pyclass(frozen, extends = PyPath, name = "Cartesian", module = "mozzi.trajectories")]
 pub struct PyCartesian {
     #[pyo3(get)]
-    /// The largest distance of the frame from its path, rad and m, found halfway between the spline's points.
+    /// Largest deviation of the frame from its path, rad and m, evaluated halfway between the spline's points.
     deviation: f64,
     #[pyo3(get)]
-    /// Solutions of inverse kinematics that the spline goes through.
+    /// Number of solutions of inverse kinematics that the spline interpolates.
     knots: usize,
 }
 

@@ -7,8 +7,7 @@ use mozzi_motion::Error;
 use mozzi_motion::trajectories::{Profile, Progress};
 use pyo3::prelude::*;
 
-/// A time scaling s(t), from s = 0 at t = 0 to s = 1 at the end: how a path is run through (Modern Robotics, section
-/// 9.2.2).
+/// A time scaling s(t) of a path, from s = 0 at t = 0 to s = 1 at the end (Modern Robotics, section 9.2.2).
 ///
 /// Made by `linear`, `cubic`, `quintic`, `trapezoidal`, `trapezoidal_in`, and by `Path.time_optimal` and
 /// `Path.stretched`.
@@ -31,50 +30,111 @@ fn made(profile: Result<Profile, Error>) -> PyResult<PyProfile> {
 
 #[pymethods]
 impl PyProfile {
-    /// s = t/T: starts and stops at once. For paths that are functions of time already. `duration` is T, s.
+    /// Make s = t/T, which starts and stops at once; for paths with s in proportion to time.
+    ///
+    /// Parameters
+    /// ----------
+    /// duration : float
+    ///     T, s.
+    ///
+    /// Returns
+    /// -------
+    /// Profile
     #[staticmethod]
     fn linear(duration: f64) -> PyResult<Self> {
         made(Profile::linear(duration))
     }
 
-    /// s = 3(t/T)² − 2(t/T)³, at rest at both ends. `duration` is T, s. Largest ṡ 1.5/T, largest |s̈| 6/T².
+    /// Make s = 3(t/T)² − 2(t/T)³, at rest at both ends.
+    ///
+    /// Largest ṡ 1.5/T, largest |s̈| 6/T².
+    ///
+    /// Parameters
+    /// ----------
+    /// duration : float
+    ///     T, s.
+    ///
+    /// Returns
+    /// -------
+    /// Profile
     #[staticmethod]
     fn cubic(duration: f64) -> PyResult<Self> {
         made(Profile::cubic(duration))
     }
 
-    /// s = 10(t/T)³ − 15(t/T)⁴ + 6(t/T)⁵, with s̈ = 0 at both ends, too. `duration` is T, s. Largest ṡ 1.875/T, largest
-    /// |s̈| 10/(√3 T²).
+    /// Make s = 10(t/T)³ − 15(t/T)⁴ + 6(t/T)⁵, at rest and with s̈ = 0 at both ends.
+    ///
+    /// Largest ṡ 1.875/T, largest |s̈| 10/(√3 T²).
+    ///
+    /// Parameters
+    /// ----------
+    /// duration : float
+    ///     T, s.
+    ///
+    /// Returns
+    /// -------
+    /// Profile
     #[staticmethod]
     fn quintic(duration: f64) -> PyResult<Self> {
         made(Profile::quintic(duration))
     }
 
-    /// Constant acceleration s̈ up to the speed ṡ, constant speed, then constant deceleration; a triangle if the speed
-    /// is not reached. `speed` in 1/s, `acceleration` in 1/s².
+    /// Make a profile of constant acceleration, constant speed and constant deceleration.
+    ///
+    /// It is a triangle if the speed is not reached.
+    ///
+    /// Parameters
+    /// ----------
+    /// speed : float
+    ///     Largest ṡ, 1/s.
+    /// acceleration : float
+    ///     |s̈|, 1/s².
+    ///
+    /// Returns
+    /// -------
+    /// Profile
     #[staticmethod]
     fn trapezoidal(speed: f64, acceleration: f64) -> PyResult<Self> {
         made(Profile::trapezoidal(speed, acceleration))
     }
 
-    /// A trapezoid of this duration, s, that accelerates for this part of it and decelerates for as long: 0 < part ≤
-    /// 0.5.
+    /// Make a trapezoidal profile of this duration.
+    ///
+    /// Parameters
+    /// ----------
+    /// duration : float
+    ///     T, s.
+    /// part : float
+    ///     Part of the duration that accelerates, and that decelerates: 0 < part ≤ 0.5.
+    ///
+    /// Returns
+    /// -------
+    /// Profile
     #[staticmethod]
     fn trapezoidal_in(duration: f64, part: f64) -> PyResult<Self> {
         made(Profile::trapezoidal_in(duration, part))
     }
 
-    /// The same profile in another duration, s: ṡ changes by the ratio of the durations, s̈ by its square.
+    /// Return the profile scaled to another duration: ṡ scales with the ratio of the durations, s̈ with its square.
+    ///
+    /// Parameters
+    /// ----------
+    /// duration : float
+    ///     T, s.
+    ///
+    /// Returns
+    /// -------
+    /// Profile
     fn in_time(&self, duration: f64) -> PyResult<Self> {
         made(self.0.in_time(duration))
     }
 
-    /// s, ṡ and s̈ at one time or at many.
+    /// Evaluate s, ṡ and s̈ at one time or at many.
     ///
     /// Parameters
     /// ----------
     /// t : array_like, shape (...)
-    ///     s. Before 0 and after the end s is 0 and 1, at rest.
+    ///     Times, s. Before 0 and after the end s is 0 and 1, at rest.
     ///
     /// Returns
     /// -------
@@ -88,7 +148,7 @@ impl PyProfile {
         named(py, "Progress", Instants::seconds(t)?.numbers(py, progress)?)
     }
 
-    /// T, s.
+    /// Duration T, s.
     #[getter]
     fn duration(&self) -> f64 {
         self.0.duration()

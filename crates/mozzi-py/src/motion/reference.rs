@@ -13,11 +13,10 @@ use mozzi::Model;
 use mozzi_motion::trajectories::{Desired, Hold, OfJoints, Profile, Recorded, Reference, Timed};
 use pyo3::prelude::*;
 
-/// A motion that a robot is to make, θ_d, θ̇_d and θ̈_d over time: a `Timed` path, a `Recorded` table, a `Hold` or an
-/// `OfJoints`. Controllers follow it.
+/// A desired motion of a robot, θ_d, θ̇_d and θ̈_d over time, which a controller follows.
 ///
-/// `at(t)` answers (theta, dtheta, ddtheta): `model.inverse_dynamics(*reference.at(t))` are the torques that it
-/// demands.
+/// It is a `Timed` path, a `Recorded` table, a `Hold` or an `OfJoints`. `at(t)` returns (theta, dtheta, ddtheta), so
+/// that `model.inverse_dynamics(*reference.at(t))` are the torques that the motion demands.
 #[pyclass(frozen, subclass, name = "Reference", module = "mozzi.trajectories")]
 pub struct PyReference {
     model: Py<PyModel>,
@@ -55,13 +54,14 @@ impl PyReference {
 
 #[pymethods]
 impl PyReference {
-    /// θ_d, θ̇_d and θ̈_d at one time or at many. Before the motion and after it the robot rests where it begins or
-    /// ends.
+    /// Evaluate θ_d, θ̇_d and θ̈_d at one time or at many.
+    ///
+    /// Before the motion and after it, the robot rests at its first and its last positions.
     ///
     /// Parameters
     /// ----------
     /// t : array_like, shape (...)
-    ///     s.
+    ///     Times, s.
     ///
     /// Returns
     /// -------
@@ -88,20 +88,20 @@ impl PyReference {
         named(py, "Desired", Instants::seconds(t)?.rows(py, [model.nq(), model.n(), model.n()], desired)?)
     }
 
-    /// s; the motion begins at 0.
+    /// Duration, s; the motion begins at 0.
     #[getter]
     fn duration(&self) -> PyResult<f64> {
         Ok(self.reference()?.duration())
     }
 
-    /// The robot.
+    /// The robot that moves.
     #[getter(model)]
     fn python_model(&self, py: Python<'_>) -> Py<PyModel> {
         self.model.clone_ref(py)
     }
 }
 
-/// A path, run through by a profile: θ̇ = θ′ṡ, θ̈ = θ″ṡ² + θ′s̈.
+/// A path with a profile: θ̇ = θ′ṡ, θ̈ = θ″ṡ² + θ′s̈.
 ///
 /// Parameters
 /// ----------
@@ -119,7 +119,7 @@ impl PyReference {
 /// array([0.75, 1.5 ])
 #[pyclass(frozen, extends = PyReference, name = "Timed", module = "mozzi.trajectories")]
 pub struct PyTimed {
-    /// θ(s).
+    /// The path, θ(s).
     #[pyo3(get)]
     path: Py<PyPath>,
 }
@@ -133,7 +133,7 @@ impl PyTimed {
         PyClassInitializer::from(reference).add_subclass(PyTimed { path })
     }
 
-    /// s(t).
+    /// The profile, s(t).
     #[getter]
     fn profile(slf: PyRef<'_, Self>) -> PyResult<PyProfile> {
         match &slf.as_super().source {
@@ -143,9 +143,10 @@ impl PyTimed {
     }
 }
 
-/// A motion from a table of times. Between two rows: the quintic that meets θ, θ̇ and θ̈ of both; without θ̈ the cubic
-/// that meets θ and θ̇; without both the cubic spline of all rows, at rest at both ends. For robots whose joints have
-/// one axis each and whose base is fixed.
+/// A motion from a table of times, for robots with a fixed base whose joints have one axis each.
+///
+/// Between two rows it is the quintic that meets θ, θ̇ and θ̈ of both; without θ̈, the cubic that meets θ and θ̇;
+/// without both, the cubic spline of all rows, at rest at both ends.
 ///
 /// Parameters
 /// ----------
@@ -192,14 +193,14 @@ impl PyRecorded {
     }
 }
 
-/// Positions to be held.
+/// Constant positions, at rest.
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     The robot.
 /// theta : array_like, shape (nq,)
-///     rad or m.
+///     Positions: rad or m.
 ///
 /// Examples
 /// --------
@@ -222,8 +223,9 @@ impl PyHold {
     }
 }
 
-/// A motion of the joints of a robot with a floating base. Nothing drives the base, and no controller uses its part:
-/// one pose, at rest.
+/// A motion of the joints of a robot with a floating base.
+///
+/// The base rests at one pose; no motor drives it, and no controller uses its part.
 ///
 /// Parameters
 /// ----------

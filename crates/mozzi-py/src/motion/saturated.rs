@@ -15,15 +15,14 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Motors with effort limits: the torques of a controller, or of any function of (t, θ, θ̇), held to the joints'
-/// limits.
+/// Motors with effort limits, which a controller or any function of (t, θ, θ̇) drives.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     The robot whose limits these are.
+///     The robot whose effort limits are used.
 /// torque : callable
-///     `torque(t, theta, dtheta)`, such as a `Controller`; answers τ, shape (..., n).
+///     `torque(t, theta, dtheta)` returns τ, shape (..., n); for example a `Controller`.
 /// policy : {'respect', 'report', 'ignore'}
 ///     'respect' clamps τ to the limits and records the demand, 'report' only records it, 'ignore' does neither.
 ///
@@ -80,12 +79,12 @@ impl PySaturated {
         Ok(PySaturated { torque: torque.clone().unbind(), motors, model })
     }
 
-    /// The motors' τ at one state or at many, within the limits.
+    /// Compute the motors' τ within the limits, at one state or at many.
     ///
     /// Parameters
     /// ----------
     /// t : array_like, shape (...)
-    ///     s.
+    ///     Times, s.
     /// theta : array_like, shape (..., nq)
     ///     Positions: rad or m.
     /// dtheta : array_like, shape (..., n)
@@ -121,8 +120,7 @@ impl PySaturated {
         Ok(tau.into_array())
     }
 
-    /// Of each joint that was asked for more than it has, since this was made: `Overload` with `joint`, the `largest`
-    /// |τ| asked for, its `limit`, N m or N, and the times of the `first` and the `last`, s.
+    /// Joints whose demanded torque exceeded the limit since construction: a list of `Overload`.
     #[getter]
     fn overloads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let notes: Vec<Overload> = self.motors().overloads().cloned().collect();
@@ -134,7 +132,7 @@ impl PySaturated {
         PyList::new(py, notes.into_iter().map(tuple).collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The robot whose limits these are.
+    /// The robot whose effort limits are used.
     #[getter]
     fn model(&self, py: Python<'_>) -> Py<PyModel> {
         self.model.clone_ref(py)

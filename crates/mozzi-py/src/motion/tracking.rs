@@ -7,14 +7,16 @@ use crate::results::named;
 use mozzi_motion::controllers::tracking_error_of_rows;
 use pyo3::prelude::*;
 
-/// The error e = θ_d ⊖ θ of each joint over a simulated motion, or over many; a floating base follows nothing.
+/// Compute the tracking error e = θ_d ⊖ θ of each joint over a simulated motion, or over many.
+///
+/// A floating base has no desired motion and is left out.
 ///
 /// Parameters
 /// ----------
 /// motion : Trajectory or Trajectories
-///     As `Model.simulate` answers.
+///     A result of `Model.simulate`.
 /// reference : Reference
-///     What was to be followed.
+///     The desired motion.
 ///
 /// Returns
 /// -------

@@ -134,7 +134,7 @@ impl Robots<'_> {
         Ok(())
     }
 
-    /// The same error with steps counted from the beginning; this piece started at this step.
+    /// Adds the number of steps before this piece to the step in an error.
     fn later(&self, error: mozzi_engine::Error, done: usize) -> PyErr {
         match error {
             mozzi_engine::Error::State {

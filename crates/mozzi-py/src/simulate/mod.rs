@@ -88,8 +88,9 @@ fn policy(name: &str) -> PyResult<Policy> {
 
 #[pymethods]
 impl PyModel {
-    /// The motion from (θ(0), θ̇(0)) over `duration` seconds, in `steps` equal steps; from many starts, many motions at
-    /// once, on all cores.
+    /// Simulate the motion from (θ(0), θ̇(0)) over `duration` seconds, in `steps` equal steps.
+    ///
+    /// Several starts, given by leading axes, are simulated at once on all cores.
     ///
     /// Parameters
     /// ----------
@@ -98,61 +99,65 @@ impl PyModel {
     /// dtheta : array_like, shape (..., n)
     ///     Velocities at the start: rad/s or m/s.
     /// duration : float
-    ///     s.
+    ///     Duration, s.
     /// steps : int
-    ///     At least 1. With 'dopri', whose steps are its own, the number of intervals between rows.
+    ///     Number of steps, at least 1; for 'dopri', which chooses its steps, the number of intervals between rows.
     /// torque : callable, array_like, 'gravity_compensation' or None
-    ///     The motors' τ: `torque(t, theta, dtheta)`, asked at each stage of each step; constant, shape (..., n); τ =
-    ///     g(θ) + k(θ − θ₀), what holds gravity and springs; or none. Of many
-    ///     starts the function is asked once for all of them, with arrays of shapes (..., nq) and (..., n), and answers
-    ///     (..., n).
+    ///     The motors' τ, N m or N. A function `torque(t, theta, dtheta)` is called at each stage of each step and
+    ///     returns shape (n,); with several starts it is called once per stage for all of them, on arrays of shapes
+    ///     (..., nq) and (..., n), and returns shape (..., n). An array of shape (..., n) is constant.
+    ///     'gravity_compensation' balances gravity and springs, τ = g(θ) + k(θ − θ₀). None is zero torque.
     /// method : {'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri', 'midpoint'}
-    ///     How a step is taken. 'auto' is 'moreau' if there is dry friction, a contact or a limit to respect, else
-    ///     'rk4'. 'moreau' is Moreau and Jean's step for one-sided forces, which the others refuse. 'dopri', of order
-    ///     5, finds its steps by a tolerance; 'midpoint' is implicit and symplectic: the energy's error stays bounded.
+    ///     Integration method. 'auto' is 'moreau' if there is dry friction, a contact or a limit to respect, else
+    ///     'rk4'. 'moreau' is Moreau and Jean's step for one-sided forces, which the other methods refuse. 'dopri', of
+    ///     order 5, chooses its steps by a tolerance; 'midpoint' is implicit and symplectic: its energy error stays
+    ///     bounded.
     /// tolerance : float or None
-    ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇; 1e-9 if
-    ///     none is given.
+    ///     'dopri' only: tolerance on the local error, absolute for θ (rad, m), relative to 1 + |θ̇| for θ̇. Default:
+    ///     1e-9.
     /// record_every : int
     ///     Record the start, every k-th step and the last.
     /// until : str, callable, or a list of them, optional
-    ///     End the motion where one of these becomes true: a condition in words, such as 'elbow > 1.2' (as it rises
-    ///     through it), '<' (falls), '=' (either), of a joint, 'theta_2', 'dtheta_2' or 'tool0.z'; 'joint-limit'; or a
-    ///     zero of `function(t, theta, dtheta)`. One start only.
+    ///     Conditions that end the motion: a text such as 'elbow > 1.2', which holds when the quantity rises through
+    ///     the value ('<': falls, '=': either), for a joint, 'theta_2', 'dtheta_2' or 'tool0.z'; 'joint-limit'; or a
+    ///     function, by a zero of `function(t, theta, dtheta)`. One start only.
     /// events : str, callable, or a list of them, optional
-    ///     Likewise, reported in the result's `events`; the motion goes on. One start only.
+    ///     Conditions of the same form, which are reported in the result's `events` and do not end the motion. One
+    ///     start only.
     /// joint_limits : {'report', 'ignore', 'respect'}
     ///     How to treat the joints' position limits: 'report' lists them in the result's `joint_limits`, 'respect'
     ///     brings a joint to rest at its limit, by 'moreau'. Many starts report no limits.
     /// gravity : array_like, shape (3,), optional
-    ///     In place of the model's own: m/s².
+    ///     Gravity in the axes of {s}, m/s². Default: the model's.
     /// slip_speed : float, optional
-    ///     Coulomb friction μ tanh(θ̇ / slip_speed) in place of dry friction that sticks.
+    ///     Coulomb friction μ tanh(θ̇ / slip_speed) in place of dry friction that sticks: rad/s or m/s.
     /// contacts : list of str or dict, optional
-    ///     Points of the robot that planes stop: the origins of frames by name, or {'frame': …, 'at': (x, y, z),
-    ///     'radius': …, 'friction': 0.7, 'restitution': 0, 'name': …}.
+    ///     Contact points of the robot: origins of frames by name, or {'frame': …, 'at': (x, y, z), 'radius': …,
+    ///     'friction': 0.7, 'restitution': 0, 'name': …}, lengths in m.
     /// planes : list of dict, optional
     ///     {'name': …, 'pose': (qw, qx, qy, qz, x, y, z), 'velocity': (x, y, z)}: the z-axis points towards the robot,
-    ///     the surface moves with the velocity. By default the ground z = 0.
+    ///     the surface moves with the velocity. Default: the ground z = 0.
     /// sticking : bool
-    ///     Many starts only: whether dry friction holds joints still. Robots with dry friction, contacts, stops, a slip
-    ///     speed, or by 'moreau', 'dopri' or 'midpoint' move one by one, each as alone, under a torque that is no
-    ///     function. With False dry friction is μ sgn θ̇, under which joints creep and chatter, and all robots move
-    ///     together in registers, which is much faster.
+    ///     Several starts only: False replaces sticking dry friction by μ sgn θ̇, under which joints creep and chatter,
+    ///     and integrates all robots together in registers, which is much faster. Robots with sticking dry friction,
+    ///     contacts, stops or a slip speed, and the methods 'moreau', 'dopri' and 'midpoint', are integrated one at a
+    ///     time; `torque` must then not be a function.
     /// threads : int, optional
-    ///     As many at most; by default all cores. Many starts only.
+    ///     Maximum number of threads; several starts only. Default: all cores.
     ///
     /// Returns
     /// -------
-    /// Trajectory, or Trajectories where there are leading axes
-    ///     `t`, shape (rows,); `theta`, shape (..., rows, nq); `dtheta`, `ddtheta`, `tau`, shape (..., rows, n); and
-    ///     the energies, shape (..., rows). Works, such as `motor_work`, of one start alone, and `closing`: by how much
-    ///     the constraints of a robot that has some are violated.
+    /// Trajectory, or Trajectories if there are leading axes
+    ///     `t`, shape (rows,), s; `theta`, shape (..., rows, nq); `dtheta`, `ddtheta`, `tau`, shape (..., rows, n); and
+    ///     the energies, shape (..., rows), J. One start also has works, such as `motor_work`, and `closing`, the
+    ///     largest violation of the constraints.
     ///
     /// Raises
     /// ------
+    /// ValueError
+    ///     For shapes that do not match, and for options that exclude each other.
     /// DivergedError
-    ///     If a state becomes infinite or NaN; of many starts, the message names which.
+    ///     If a state becomes infinite or NaN; the message contains the start's index.
     ///
     /// Examples
     /// --------

@@ -72,9 +72,10 @@ impl<'py> Inputs<'py> {
 
 #[pymethods]
 impl PyModel {
-    /// The states of N steps under torques that are held over each step, from one start or from many at once, on all
-    /// cores: x[k + 1] = Φ(x[k], τ[k]) with x = (θ, θ̇). Joint limits are ignored. A robot with constraints is brought
-    /// back onto them after each step; it takes an explicit method.
+    /// Compute the states of N steps under torques that are constant over each step.
+    ///
+    /// x[k + 1] = Φ(x[k], τ[k]) with x = (θ, θ̇), from one start, or from several at once on all cores. Joint limits
+    /// are ignored. A robot with constraints is projected onto them after each step, and requires an explicit method.
     ///
     /// Parameters
     /// ----------
@@ -87,11 +88,11 @@ impl PyModel {
     /// step : float
     ///     The length of a step, s.
     /// method : {'rk4', 'semi-implicit-euler', 'euler', 'midpoint'}
-    ///     How a step is taken, as in `simulate`.
+    ///     Integration method, as in `simulate`.
     /// gravity : array_like, shape (3,), optional
-    ///     In place of the model's own: m/s².
+    ///     Gravity in the axes of {s}, m/s². Default: the model's.
     /// threads : int, optional
-    ///     As many at most; by default all cores. Many starts only.
+    ///     Maximum number of threads; several starts only. Default: all cores.
     ///
     /// Returns
     /// -------
@@ -102,7 +103,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// DivergedError
-    ///     If a state becomes infinite or NaN; of many starts, the message names which.
+    ///     If a state becomes infinite or NaN; the message contains the start's index.
     ///
     /// Examples
     /// --------
@@ -143,13 +144,15 @@ impl PyModel {
         named(py, "Rollout", vec![theta_table.into_array(), dtheta_table.into_array()])
     }
 
-    /// The vector-Jacobian product of `rollout`: the gradient of a loss L of its states by the start, the torques of
-    /// each step and the parameters, from the loss's own gradient by each state. It is the adjoint of the discrete
-    /// steps, exact to rounding for any step size, and takes about four times the rollout's time.
+    /// Compute the vector-Jacobian product of `rollout`, the gradient of a loss L of its states.
     ///
-    /// Gradients by θ have n entries, along the velocities: for joints of one axis they are ∂L/∂θ; for a floating base,
-    /// a ball or a free joint they are along the body twist (ω, v) in its own coordinates, not along the entries of the
-    /// quaternion.
+    /// Maps ∂L/∂x[k] of each state to the gradients with respect to the start, the torques of each step and the
+    /// parameters. It is the adjoint of the discrete steps, exact to rounding for any step size, and takes about four
+    /// times the rollout's time.
+    ///
+    /// Gradients with respect to θ have n entries, along the velocities: for joints of one axis they are ∂L/∂θ; for a
+    /// floating base, a ball or a free joint they are along the body twist (ω, v) in its own coordinates, not along the
+    /// entries of the quaternion.
     ///
     /// Parameters
     /// ----------
@@ -166,24 +169,24 @@ impl PyModel {
     /// dtheta_bar : array_like, shape (..., N + 1, n)
     ///     ∂L/∂θ̇[k].
     /// method : {'rk4', 'semi-implicit-euler', 'euler', 'midpoint'}
-    ///     How a step is taken, as in `simulate`.
+    ///     Integration method, as in `simulate`.
     /// parameters : bool
-    ///     Whether to return the gradient by the parameters, too.
+    ///     True to return the gradient with respect to the parameters as well.
     /// gravity : array_like, shape (3,), optional
-    ///     In place of the model's own: m/s².
+    ///     Gravity in the axes of {s}, m/s². Default: the model's.
     /// threads : int, optional
-    ///     As many at most; by default all cores. Many starts only.
+    ///     Maximum number of threads; several starts only. Default: all cores.
     ///
     /// Returns
     /// -------
     /// tuple of ndarray, float64
     ///     ∂L/∂θ[0], shape (..., n), along the velocities; ∂L/∂θ̇[0], shape (..., n); ∂L/∂τ, shape (..., N, n); and
-    ///     with `parameters=True` ∂L/∂π, shape (..., p), by `model.parameters` of each start.
+    ///     with `parameters=True` ∂L/∂π, shape (..., p), with respect to `model.parameters` for each start.
     ///
     /// Raises
     /// ------
     /// DivergedError
-    ///     If a state becomes infinite or NaN; of many starts, the message names which.
+    ///     If a state becomes infinite or NaN; the message contains the start's index.
     ///
     /// Examples
     /// --------

@@ -1,4 +1,4 @@
-//! A library's answer.
+//! Results of a library.
 
 use crate::compare::constants::{Constants, JointConstants, body};
 use crate::compare::convention::velocity_names;
@@ -27,11 +27,11 @@ pub enum Workaround {
 pub enum Unavailable {
     NotInstalled(String),
     Refuses(String),
-    /// The script ended without an answer, or was killed at the time limit.
+    /// The script ended without a result, or was killed at the time limit.
     Died(String, Fault),
 }
 
-/// The part at fault for a missing answer.
+/// The part at fault for a missing result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The library's own code, or its installation.

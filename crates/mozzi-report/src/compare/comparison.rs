@@ -115,8 +115,8 @@ impl Comparison {
         self.verdicts_are(Verdict::agrees)
     }
 
-    /// Whether at least one library computed results, every difference is explained, and no library that is installed
-    /// failed to answer.
+    /// True if at least one library computed results, every difference is explained, and no installed library failed to
+    /// return a result.
     pub fn is_explained(&self) -> bool {
         let answers = self.findings.iter().flat_map(|finding| {
             [Some(&finding.answer), finding.coupled.as_ref().map(|(answer, _)| answer)].into_iter().flatten()

@@ -21,7 +21,7 @@ pub enum Error {
     Write {
         /// The robot.
         robot: String,
-        /// What URDF cannot express.
+        /// The part that URDF cannot express.
         error: mozzi_urdf::NotUrdf,
     },
     /// Python cannot be started.

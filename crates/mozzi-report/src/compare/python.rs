@@ -1,4 +1,4 @@
-//! Runs the libraries: a script in a Python process, a question in, an answer out.
+//! Runs the libraries: a script in a Python process reads a request and writes results.
 
 use crate::compare::answer::{Answer, Fault, Unavailable};
 use crate::compare::question::Question;
@@ -74,14 +74,14 @@ fn answer(child: Child, question: &Question, peer: Peer, limit: Duration) -> Ans
     answer.unwrap_or_else(|(why, fault)| Answer::silent(peer.key(), Unavailable::Died(why, fault)))
 }
 
-/// One answer as JSON, to be stored.
+/// The results of one library as JSON, to be stored.
 #[cfg(test)]
 pub fn raw(python: &Path, question: &Question, peer: Peer) -> std::result::Result<serde_json::Value, String> {
     let child = start(python).map_err(|error| error.to_string())?;
     value(child, question, peer, crate::compare::TIME_LIMIT).map_err(|(why, _)| why)
 }
 
-/// The reason why there is no answer, and the part at fault.
+/// The reason why there is no result, and the part at fault.
 type Missing = (String, Fault);
 
 fn not_written(text: &str) -> Missing {

@@ -12,7 +12,7 @@ use crate::text::{Page, about, table};
 pub struct Finding {
     pub answer: Answer,
     pub verdict: Option<Verdict>,
-    /// Pinocchio's answer with coupled mimic joints, if it was called that way.
+    /// Pinocchio's results with coupled mimic joints, if it was called that way.
     pub coupled: Option<(Answer, Option<Verdict>)>,
 }
 

@@ -1,4 +1,4 @@
-//! What is compared at one state.
+//! Compared terms of the dynamics at one state.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,4 @@
-//! Each explanation is found from the real libraries' answers, which [`record`] stored in `tests/peers/`.
+//! Each explanation is found from stored results of the real libraries, which [`record`] wrote to `tests/peers/`.
 #![allow(clippy::unwrap_used)]
 
 use crate::compare::Source;

@@ -84,8 +84,8 @@ fn within_a_decade([low, high]: [f64; 2]) -> Vec<(f64, String)> {
     all.map(place).filter(|(x, ..)| (low..=high).contains(x)).map(named).collect()
 }
 
-/// What is drawn of values: of spikes, which would dwarf all else, the part up to the range of 99 % of the numbers;
-/// and the lowest and the highest number where they are beyond.
+/// The range to draw: if there are spikes, up to the range of 99 % of the numbers; then also the lowest and the highest
+/// number beyond it.
 pub(super) fn without_spikes(values: &[f64]) -> ([f64; 2], [Option<f64>; 2]) {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);

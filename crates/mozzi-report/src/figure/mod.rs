@@ -27,7 +27,7 @@ pub struct Panel {
     pub y_label: String,
     /// The scale of both axes.
     pub scale: Scale,
-    /// Does a unit have the same length on both axes?
+    /// True for equal scales of both axes.
     pub equal: bool,
     /// Later ones are drawn over earlier ones.
     pub curves: Vec<Curve>,

@@ -20,7 +20,7 @@ const LETTER: f64 = 6.2;
 const PALETTE: [&str; 10] =
     ["#2f6fcb", "#d96a26", "#2a8f63", "#b83a5e", "#7a52c7", "#9a7b16", "#16879b", "#c253a6", "#555d66", "#111111"];
 
-/// Of the eleventh and further curves.
+/// Dashes of the eleventh and further curves.
 const DASHES: [&str; 3] = ["8 4", "2 3", "10 3 2 3"];
 
 fn color(k: usize) -> &'static str {
@@ -55,8 +55,8 @@ impl Figure {
         )
     }
 
-    /// The same with the colours of a page's style sheet, for light and dark: `--c0` to `--c9`, `--panel`, `--text`,
-    /// `--muted`, `--line`.
+    /// The figure as SVG with the colours of a page's style sheet, for light and dark: `--c0` to `--c9`, `--panel`,
+    /// `--text`, `--muted`, `--line`.
     pub fn svg_of_page(&self) -> String {
         let colors = PALETTE.iter().enumerate().map(|(k, color)| (*color, format!("var(--c{k})")));
         let grounds = [("#ffffff", "panel"), ("#222", "text"), ("#333", "muted"), ("#e3e6ea", "line")];

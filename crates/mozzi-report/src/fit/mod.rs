@@ -1,5 +1,5 @@
-//! The report of an identification: one HTML file with figures, without scripts. The answer comes first, then what is
-//! not known, then the figures; tables are folded. Printed it is one page.
+//! The report of an identification: one HTML file with figures, without scripts. The verdict comes first, then the
+//! undetermined parameters, then the figures; tables are folded. Printed it is one page.
 
 mod bars;
 mod forces;

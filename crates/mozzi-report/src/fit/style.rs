@@ -1,6 +1,6 @@
 //! The look of the report: that of the pages, in light and dark, on a phone and on paper.
 
-/// The style sheet. On paper only the answer, the errors, the forces and the friction of the first log are left.
+/// The style sheet. Prints contain only the verdict, the errors, the forces and the friction of the first log.
 pub const STYLE: &str = "\
 :root{--panel:#fff;--text:#1b2128;--muted:#55606c;--line:#d9dfe6;--accent:#2f6fcb;--good:#1d7a4f;--bad:#b3261e;\
 --c0:#2f6fcb;--c1:#d96a26;--c2:#2a8f63;--c3:#b83a5e;--c4:#7a52c7;--c5:#9a7b16;--c6:#16879b;--c7:#c253a6;--c8:#555d66;--c9:#111;\

@@ -91,7 +91,7 @@ impl Decimals {
         if is_lost { Decimals { places: 4, scientific: true, ..decimals } } else { decimals }
     }
 
-    /// Would it be shown with too few digits?
+    /// True if too few digits would be shown.
     fn loses(self, x: f64) -> bool {
         let shown: f64 = format!("{x:.*}", self.places).parse().unwrap_or(f64::NAN);
         x.is_finite() && x.abs() > self.rounding && !self.scientific && (shown - x).abs() > LOST * x.abs()

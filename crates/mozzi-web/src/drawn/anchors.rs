@@ -5,7 +5,7 @@ use crate::request::Output;
 use mozzi::model::description::ConstraintKind;
 use mozzi::{Error, Model};
 
-/// Of every constraint that has anchors.
+/// Anchors of every constraint that has some.
 pub const CONSTRAINT_ANCHORS: Drawn = Drawn {
     name: "constraint_anchors",
     formula: "the origins of the anchors {a} and {b} of each constraint, in {s}",

@@ -4,7 +4,7 @@ use super::{Call, Drawn, output};
 use crate::request::Output;
 use mozzi::{BodyFrame, Error, Model, SE3, Twist, Wrench};
 
-/// Of the base and of each moving link.
+/// Motion and joint wrench of the base and of each moving link.
 pub const BODY_MOTION: Drawn = Drawn {
     name: "body_motion",
     formula: "of each body the centre of mass c and its velocity, ω, the point p at which its joint acts, and the \

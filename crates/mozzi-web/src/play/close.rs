@@ -34,7 +34,7 @@ pub fn within(model: &Model, theta: &mut [f64]) {
     }
 }
 
-/// The same for the inputs, before a simulation that respects limits.
+/// Moves the inputs within the joints' limits, before a simulation that respects them.
 pub fn put_within(robot: &mut Robot) -> Value {
     let mut theta = robot.theta().to_vec();
     within(robot.model(), &mut theta);
@@ -42,7 +42,7 @@ pub fn put_within(robot: &mut Robot) -> Value {
     Value::Null
 }
 
-/// A floating base moves up or down until its lowest contact point is at z = 0. Answers with that height before.
+/// Moves a floating base up or down until its lowest contact point is at z = 0. Returns that point's height before.
 pub fn settle(robot: &mut Robot) -> Result<Value, String> {
     let mut theta = robot.theta().to_vec();
     let contacts = Contacts { points: robot.settings.points.clone(), planes: vec![Plane::ground()] };

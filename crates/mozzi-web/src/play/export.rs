@@ -4,7 +4,7 @@ use mozzi::{Base, Model};
 use mozzi_urdf::{expressible, json, write};
 use serde_json::{Value, json};
 
-/// URDF, without what it cannot express; the answer lists that.
+/// The robot as URDF, and a list of the parts that URDF cannot express.
 pub fn urdf(model: &Model) -> Result<Value, String> {
     let mut robot = expressible(model.description());
     let mut left_out = Vec::new();

@@ -1,7 +1,7 @@
-//! What only the playground needs: robots from dropped files, simulation in real time, inverse kinematics, edits.
+//! The playground's own functions: robots from dropped files, simulation in real time, inverse kinematics, edits.
 //!
 //! A command is a JSON object whose `do` names it. Commands read θ and θ̇ from the robot's inputs and write the results
-//! there; everything else is in their JSON answers.
+//! there; all other results are in the returned JSON.
 
 mod close;
 mod drag;
@@ -24,11 +24,11 @@ use entry::text;
 use serde_json::Value;
 
 impl Robot {
-    /// Carries out a command, and returns its answer:
+    /// Runs a command, and returns its result:
     ///
     /// | `do` | |
     /// |---|---|
-    /// | `set` | `motors`, `omega`, `zeta`, `target`, `ground`, `limits`: how to simulate; `reset`, or `account`, from an answer of `step` |
+    /// | `set` | `motors`, `omega`, `zeta`, `target`, `ground`, `limits`: how to simulate; `reset`, or `account`, from a result of `step` |
     /// | `step` | `step` (s), `steps`, and a push: simulates; the state goes to the inputs |
     /// | `reach` | `frame`, `goal` (m, in {s}), `keep` (the orientation): θ by inverse kinematics |
     /// | `drag` | `joint`, `frame`, `point` (in the frame), `goal` (in {s}): θ of that joint alone |

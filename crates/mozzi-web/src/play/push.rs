@@ -21,7 +21,7 @@ pub struct Push<'m> {
 }
 
 impl<'m> Push<'m> {
-    /// Of a command's `push`; none if there is none.
+    /// Reads a command's `push`; `None` if there is none.
     pub fn parse(model: &'m Model, command: &Value) -> Result<Option<Self>, String> {
         let push = &command["push"];
         if push.is_null() {

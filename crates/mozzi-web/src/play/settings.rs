@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// Motors, contacts and limits, and the account of the energies since the last reset.
 #[derive(Debug)]
 pub struct Settings {
-    /// What can touch the ground.
+    /// Points that can touch the ground.
     pub points: Vec<ContactPoint>,
     pub kind: Kind,
     pub gains: Gains,
@@ -41,7 +41,7 @@ impl Default for Settings {
     }
 }
 
-/// Takes the settings that a command names; the others stay. Answers with the gains.
+/// Takes the settings that a command names; the others stay. Returns the gains.
 pub fn set(robot: &mut Robot, command: &Value) -> Result<Value, String> {
     let theta = robot.theta().to_vec();
     let has = |key: &str| !command[key].is_null();

@@ -32,7 +32,7 @@ impl Input for Both<'_> {
     }
 }
 
-/// Steps from the state in the inputs; the new state, θ̈ and τ go there. Answers with energies, contacts and the push.
+/// Steps from the state in the inputs; the new state, θ̈ and τ go there. Returns energies, contacts and the push.
 pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
     let (length, steps) = (number(command, "step")?, number(command, "steps")?);
     let steps = steps as usize;

@@ -108,7 +108,7 @@ fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<T
     let mut differences = Vec::new();
     let mut reference = Vec::new();
     for run in &mut *runs {
-        if interrupt::asked() {
+        if interrupt::is_requested() {
             return Ok(None);
         }
         let (way, results) = (run.way, run.results()?);
@@ -127,7 +127,7 @@ fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<T
     let mut times = vec![Vec::with_capacity(rounds); runs.len()];
     for _ in 0..rounds {
         for (run, times) in runs.iter_mut().zip(&mut times) {
-            if interrupt::asked() {
+            if interrupt::is_requested() {
                 return Ok(None);
             }
             let start = Instant::now();

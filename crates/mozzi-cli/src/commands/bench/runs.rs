@@ -68,7 +68,7 @@ impl Run<'_> {
         (self.compute)(false).map(drop)
     }
 
-    /// What computed the last run.
+    /// The engine of the last run.
     pub fn engine(&self) -> String {
         (self.engine)()
     }

@@ -19,7 +19,7 @@ impl Way {
 /// Nanoseconds per state, and the largest difference from one state, relative to the largest entry.
 pub struct Timing {
     pub name: String,
-    /// What computed it.
+    /// The engine that computed the quantity.
     pub engine: String,
     pub way: Way,
     pub least: f64,

@@ -44,7 +44,7 @@ pub fn compute<T: Precision>(
     interrupt::listen();
     let (progress, start) = (Progress::new(hyphenated(query.name()), count, "states"), Instant::now());
     let mut first = 0;
-    while first < count && !interrupt::asked() {
+    while first < count && !interrupt::is_requested() {
         let these = PIECE.min(count - first);
         let part = |table: &'_ Vec<T>| {
             let width = table.len() / count;

@@ -24,7 +24,7 @@ pub struct OneState<'a> {
 }
 
 impl OneState<'_> {
-    /// Does it depend on the state?
+    /// True if the quantity depends on the state.
     pub fn is_of_state(&self) -> bool {
         !self.inputs.is_empty()
     }

@@ -35,7 +35,7 @@ pub struct TableArguments {
     /// Precision of the computation and of the results [default: f64]
     #[arg(long, value_parser = ["f64", "f32"])]
     precision: Option<String>,
-    /// Largest number of threads [default: one per core]
+    /// Maximum number of threads [default: one per core]
     #[arg(long, value_name = "K")]
     threads: Option<usize>,
     /// Make no machine code: the numbers are those at one state, to the bit
@@ -173,7 +173,7 @@ fn compute<T: Precision>(
     interrupt::listen();
     let progress = Progress::new(hyphenated(query.name()), count, "states");
     let (mut first, mut piece) = (0, FIRST);
-    while first < count && !interrupt::asked() {
+    while first < count && !interrupt::is_requested() {
         let (begin, these) = (Instant::now(), piece.min(count - first));
         let inputs: Vec<&[T]> = states.inputs.iter().map(|table| part(table, count, first, these)).collect();
         let wrenches: Vec<(FrameId, &[T])> =

@@ -11,7 +11,7 @@ use mozzi_urdf::{
 };
 use std::path::Path;
 
-/// What a URDF is written without.
+/// Parts that the written URDF leaves out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LeftOut {
     Armature,

@@ -10,7 +10,7 @@ use crate::tables::{How, read};
 use mozzi::{FrameId, Model};
 use mozzi_identify::Log;
 
-/// What the command line says about the logs.
+/// Options of the command line for reading logs.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'g> {
     pub order: &'g [String],

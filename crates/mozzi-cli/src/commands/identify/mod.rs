@@ -57,8 +57,8 @@ pub struct IdentifyArguments {
     /// Estimate these parameters alone
     #[arg(long)]
     only: Option<Only>,
-    /// The frame that carries the payload of --only payload (links and a payload cannot be told apart by one log)
-    /// [default: the end effector]
+    /// The frame that carries the payload of --only payload (one log cannot separate links from a payload) [default:
+    /// the end effector]
     #[arg(long, value_name = "FRAME")]
     payload: Option<String>,
     /// Where forces are measured; current: estimate drive gains, which needs --known-payload
@@ -73,10 +73,10 @@ pub struct IdentifyArguments {
     /// How accelerations are computed
     #[arg(long, value_name = "HOW", default_value = "differences")]
     acceleration: How,
-    /// Weight of the robot's own values where the data is silent
+    /// Weight of the robot file's values for parameters that the data does not determine
     #[arg(long, value_name = "WEIGHT", default_value = "0.3", allow_hyphen_values = true)]
     prior: String,
-    /// Let large residuals count less (Huber)
+    /// Reduce the weight of large residuals (Huber)
     #[arg(long)]
     robust: bool,
     /// Percent of each log to fit, in tens; the rest is predicted
@@ -119,10 +119,10 @@ pub struct IdentifyArguments {
     /// The topic of a bag, or the beginning of the columns' path
     #[arg(long, value_name = "NAME")]
     topic: Option<String>,
-    /// Print every parameter, what each column of the logs is taken for, and what the motion does not determine
+    /// Print every parameter, the meaning of each column of the logs, and what the motion does not determine
     #[arg(long)]
     all: bool,
-    /// Print what each column of the logs is taken for, and nothing else
+    /// Print the meaning of each column of the logs, and nothing else
     #[arg(long)]
     columns: bool,
     /// Fit a log that contradicts itself or the robot's file; the contradictions are then warnings
@@ -178,9 +178,9 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     arguments.known_payloads(&model, &mut logs)?;
     interrupt::listen();
     let progress = Waiting::on("identifying");
-    let mut found = identify(&model, &logs, &options, &interrupt::asked)?;
+    let mut found = identify(&model, &logs, &options, &interrupt::is_requested)?;
     if arguments.refine {
-        let refined = refine(&found, &RefineOptions::default(), &interrupt::asked)?;
+        let refined = refine(&found, &RefineOptions::default(), &interrupt::is_requested)?;
         page::refinement(&model, &refined).iter().for_each(|line| failure::note(line));
         found.replace(refined.x)?;
     }
@@ -224,7 +224,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     }
 }
 
-/// A log, without what the command line says about it.
+/// Reads a log without options of the command line.
 pub fn log(file: &str, model: &Model) -> Result<Log> {
     let given = Given { order: &[], force: Force::Torque, topic: None };
     Ok(read_log(file, model, &given)?.0)
@@ -259,7 +259,7 @@ impl IdentifyArguments {
         Ok(all)
     }
 
-    /// What each column of each log is taken for.
+    /// Tables of the meaning of each column of each log.
     fn column_tables(&self, model: &Model, given: &Given) -> Result<String> {
         let mut tables: Vec<(String, Vec<Row>)> = Vec::new();
         for file in &self.logs {

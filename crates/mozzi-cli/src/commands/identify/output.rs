@@ -9,7 +9,7 @@ use mozzi::Description;
 use mozzi_urdf::{EditedFile, Settings, edit_files, expanded, mjcf};
 use std::path::{Path, PathBuf};
 
-/// What `--out` asks for.
+/// The kind of the output file `--out`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Urdf,

@@ -1,4 +1,4 @@
-//! What is wrong with the columns of a table, and what helps.
+//! Errors about the columns of a table, with remedies.
 
 use super::{MEANINGS, Search};
 use crate::failure::{Failure, Result};
@@ -68,7 +68,7 @@ impl Search<'_> {
         )))
     }
 
-    /// The columns whose names say nothing.
+    /// The columns whose names are not recognised.
     fn unread(&self) -> String {
         let names: Vec<&str> = self.unread.iter().take(4).map(|&column| self.name(column)).collect();
         match names.is_empty() {

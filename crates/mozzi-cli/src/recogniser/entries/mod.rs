@@ -26,7 +26,7 @@ pub enum Force {
 /// Why a motor's current is not used; `identify` looks for it.
 pub const IS_CURRENT: &str = "a motor current, no torque";
 
-/// What the first four groups are called in messages.
+/// Names of the first four groups in messages.
 const MEANINGS: [&str; 4] = ["position", "velocity", "acceleration", "force"];
 
 /// The groups with their columns.
@@ -45,7 +45,7 @@ struct Search<'a> {
     model: &'a Model,
     request: &'a Request<'a>,
     notes: Vec<String>,
-    /// Columns whose names say nothing.
+    /// Columns whose names are not recognised.
     unread: Vec<usize>,
 }
 
@@ -158,7 +158,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// What each column says.
+    /// Reads the name of each column.
     fn readings(&mut self, roles: &mut [Role]) -> Result<Vec<(usize, Reading)>> {
         let names: Vec<String> = match self.request.order.is_empty() {
             true => self.model.position_names().chain(self.model.velocity_names()).map(String::from).collect(),

@@ -17,7 +17,7 @@ const CONTINUATION: [u8; 4] = [0xff; 4];
 /// The unpacked length of a buffer that is not compressed.
 const PLAIN: i64 = -1;
 
-/// Are all parts inside of the file, and is the unpacked size acceptable?
+/// Checks that all parts are inside of the file, and that the unpacked size is acceptable.
 pub fn check(file: &mut File) -> Checked<()> {
     let length = file.seek(SeekFrom::End(0)).map_err(said)?;
     let start = bytes(file, 0, length.min(8))?;

@@ -73,7 +73,7 @@ pub fn batch<T: Precision>(columns: Vec<(String, Vec<T>)>) -> std::result::Resul
     RecordBatch::try_new(schema, arrays)
 }
 
-/// The same into a file.
+/// Writes an Arrow table into a file.
 pub fn write<T: Precision>(file: &str, columns: Vec<(String, Vec<T>)>) -> Result<()> {
     Output::create(file)?.write(|to| {
         let batch = batch(columns).map_err(std::io::Error::other)?;

@@ -31,11 +31,11 @@ pub struct Cause {
     pub kind: &'static str,
     /// The joint or link.
     pub name: String,
-    /// What happened, with the reason if one is known.
+    /// The change, with the reason if one is known.
     pub sentence: String,
     pub has_reason: bool,
     pub change: Change,
-    /// What the change alone does: "gravity torque of `joint6` by up to 0.97 N m".
+    /// Effect of the change alone: "gravity torque of `joint6` by up to 0.97 N m".
     pub effect: Option<String>,
 }
 

@@ -18,7 +18,7 @@ pub struct FilesComparison {
     pub(super) common: usize,
     pub(super) renamed: Vec<(String, String)>,
     pub(super) only: [Vec<String>; 2],
-    /// Is the base free in one file only?
+    /// A sentence about the base, if it is floating in one file only.
     pub(super) base: Option<String>,
     /// As the files are, and with all causes accounted for.
     pub(super) before: Gaps,

@@ -108,7 +108,7 @@ impl States {
     }
 }
 
-/// Is no difference larger than this part of the quantity's largest number?
+/// True if no difference is larger than this part of the quantity's largest number.
 pub fn agree(gaps: &Gaps, tolerance: f64) -> bool {
     // gravity that is 0 in both up to rounding is compared with the torques
     let most = gaps[2].scale;

@@ -251,7 +251,7 @@ fn of_moments([one, other]: [&str; 2], of: &str, a: Body, b: Body, axes: [Option
     })
 }
 
-/// Is I_b = Rᵀ D R, where I_a = R D Rᵀ, for one of the orders and signs of the eigenvectors?
+/// True if I_b = Rᵀ D R and I_a = R D Rᵀ for one of the orders and signs of the eigenvectors.
 fn conjugate(a: Sym3, b: Sym3) -> bool {
     let rows = a.to_mat3().rows();
     let matrix = nalgebra::Matrix3::from_fn(|i, j| rows[i][j]);

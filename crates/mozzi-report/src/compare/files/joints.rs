@@ -53,7 +53,7 @@ fn gear(a: f64, b: f64) -> Option<String> {
     (is_whole && !is_ten).then(|| format!("lacks the square of the gear ratio {}", ratio.round()))
 }
 
-/// The same joint: by name if it moves, by its child if it is fixed.
+/// The corresponding joint of the other robot: by name if it moves, by its child if it is fixed.
 fn twin<'b>(joint: &Joint, b: &'b Description) -> Option<&'b Joint> {
     match joint.kind {
         JointKind::Fixed => b.joints.iter().find(|there| there.kind == JointKind::Fixed && there.child == joint.child),

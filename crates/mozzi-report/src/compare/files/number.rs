@@ -7,7 +7,8 @@ pub fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
 }
 
-/// The same number, but for a unit, a decimal point or a sign; in words that follow the number's name.
+/// The reason of a difference between two numbers: a unit, a decimal point or a sign, in words that follow the number's
+/// name.
 pub fn reason(a: f64, b: f64) -> Option<String> {
     if b == 0.0 {
         return Some("is dropped".to_string());

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 /// Causes beyond this number are counted.
 const SHOWN: usize = 40;
 
-/// What a change does to gravity, or else to the torques, or else to M.
+/// Effect of a change on gravity torques, or else on torques, or else on M.
 pub fn effect(states: &States, [M, g, tau]: &Gaps) -> Option<String> {
     let counts = |gap: &Gap, scale: f64| gap.most > 1e-12 * gap.scale.max(scale) && gap.most > 0.0;
     let of = |gap: &Gap, what: &str| {
