@@ -1,4 +1,4 @@
-//! A sample, by a seed, of the faults that cargo-mutants puts into the kernels one at a time, and which the tests notice.
+//! A sample, by a seed, of the faults that cargo-mutants puts into the kernels, one at a time, each shown to the tests.
 //!
 //! `.cargo/mutants.toml` lists the files. A fault in a crate is shown to the unit tests of that crate, and to the
 //! conformance test of mozzi-engine, which computes every quantity twice. The results are in
@@ -11,7 +11,7 @@ use serde_json::Value;
 
 const PAGE: &str = "docs/mutants.md";
 const FOLDER: &str = "target/mutants";
-/// Faults in a sample, unless `--sample` says otherwise.
+/// Faults in a sample, unless `--sample` is given.
 pub const SAMPLE: usize = 60;
 
 pub fn run(workspace: &Workspace, sample: usize, seed: usize) -> Outcome {

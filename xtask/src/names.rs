@@ -1,4 +1,4 @@
-//! What documents name must exist: paths of Rust items, files of the repository, commands of xtask, packages and test
+//! Names in documents must exist: paths of Rust items, files of the repository, commands of xtask, packages and test
 //! programs of `cargo`, and the targets of links in the pages that the book does not contain.
 
 use crate::report::Outcome;

@@ -120,7 +120,7 @@ fn accuracy(agreement: &str) -> Result<String, String> {
     Ok(text)
 }
 
-/// What the first command costs.
+/// The cost of the first command.
 fn weight(page: &str) -> Result<String, String> {
     let table = Table::of(page)?;
     let cell = |what| table.cell(what, "now");

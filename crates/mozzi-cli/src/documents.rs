@@ -10,7 +10,7 @@ const DOCUMENTS: [&str; 6] =
     ["README.md", "CONTRIBUTING.md", "crates/mozzi-py/README.md", "docs", "book/src", "examples/README.md"];
 /// Records, and a page whose examples are wrong on purpose.
 const SKIPPED: [&str; 2] = ["performance-log.md", "diagnostics"];
-/// What stands for anything in a command line.
+/// Placeholders: command lines with one of these are skipped.
 const OPEN: [&str; 3] = ["…", "COMMAND", "..."];
 
 fn collect(path: &Path, files: &mut Vec<PathBuf>) {

@@ -75,7 +75,7 @@ class Gpu:
         Returns
         -------
         array, or tuple of arrays
-            Of the first input's framework.
+            In the first input's framework.
         """
         if not inputs:
             raise TypeError(f"{quantity} takes one array or more, found none")
