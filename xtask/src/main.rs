@@ -42,6 +42,7 @@ mod prose;
 mod readme;
 mod release;
 mod report;
+mod sbom;
 mod source_text;
 mod spdx;
 mod stamp;
@@ -118,7 +119,8 @@ usage: cargo xtask COMMAND
   dist    archives of the C and C++ library for Linux into target/dist, for glibc 2.28 or newer; needs cmake
   deb     a Debian package for this machine into target/deb: command line, completions, manual, C and C++ library; installs
           it into an empty root and uses it; needs dpkg-deb and cmake, else it is skipped
-  licences  write THIRD-PARTY.txt, the licences of all linked packages, which the binaries are shipped with; `check` compares";
+  licences  write THIRD-PARTY.txt, the licences of all linked packages, and mozzi.cdx.json, their list in CycloneDX's format;
+          the binaries are shipped with both, `check` compares";
 
 /// Options of `test`, each with what it installs.
 const EXTRAS: [(&str, &str); 1] = [("--torch", venv::TORCH)];

@@ -4,6 +4,7 @@
 use crate::command;
 use crate::page;
 use crate::report::Outcome;
+use crate::sbom;
 use crate::workspace::{FEATURES, Workspace};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,30 +40,42 @@ Each line is a package, its licence, the binaries that contain it, and the numbe
 /// A licence text, and the packages that contain it.
 type Texts = BTreeMap<String, Vec<String>>;
 
-/// Writes the file.
+/// A package with its version, its licence, and the artefacts that contain it.
+type Line = (String, String, String);
+
+/// Writes the file, and the bill of materials with the same packages.
 pub fn write(workspace: &Workspace) -> Outcome {
-    let written = text(workspace).and_then(|(text, count)| {
-        let file = workspace.path(FILE);
-        std::fs::write(&file, &text).map_err(|error| format!("{}: {error}", file.display()))?;
-        Ok(format!("{FILE}: {count} packages, {} kB", text.len() / 1000))
+    let written = texts(workspace).and_then(|files| {
+        for (name, text) in &files {
+            std::fs::write(workspace.path(name), text).map_err(|error| format!("{name}: {error}"))?;
+        }
+        Ok(files.map(|(name, text)| format!("{name}: {} kB", text.len() / 1000)).join(", "))
     });
     written.map_or_else(Outcome::Failed, Outcome::Passed)
 }
 
-/// Fails if the file does not agree with Cargo.lock.
+/// Fails if a file does not agree with Cargo.lock.
 pub fn check(workspace: &Workspace) -> Outcome {
-    let current = text(workspace).and_then(|(text, count)| {
-        let file = std::fs::read_to_string(workspace.path(FILE)).map_err(|error| format!("{FILE}: {error}"))?;
-        if file.replace("\r\n", "\n") != text {
-            return Err(format!("{FILE} does not agree with Cargo.lock: `cargo xtask licences` rewrites it"));
+    let current = texts(workspace).and_then(|files| {
+        for (name, text) in &files {
+            let file = std::fs::read_to_string(workspace.path(name)).map_err(|error| format!("{name}: {error}"))?;
+            if file.replace("\r\n", "\n") != *text {
+                return Err(format!("{name} does not agree with Cargo.lock: `cargo xtask licences` rewrites it"));
+            }
         }
-        Ok(format!("{FILE}: {count} packages"))
+        Ok(files.map(|(name, _)| name).join(", "))
     });
     current.map_or_else(Outcome::Failed, Outcome::Passed)
 }
 
-/// The file's text, and the number of packages in it.
-fn text(workspace: &Workspace) -> Result<(String, usize), String> {
+/// Each file with its text.
+fn texts(workspace: &Workspace) -> Result<[(&'static str, String); 2], String> {
+    let (licences, lines) = text(workspace)?;
+    Ok([(FILE, licences), (sbom::FILE, sbom::text(&workspace.version()?, &lines))])
+}
+
+/// The file's text, and the packages in it.
+fn text(workspace: &Workspace) -> Result<(String, Vec<Line>), String> {
     let mut cargo = workspace.cargo(&["metadata", "--locked", "--format-version", "1"]);
     let (true, text) = command::output(cargo.args(FEATURES))? else {
         return Err("`cargo metadata` failed".into());
@@ -100,11 +113,11 @@ fn text(workspace: &Workspace) -> Result<(String, usize), String> {
         }
         lines.push((name, text("license"), artefacts.into_iter().collect::<Vec<_>>().join(", ")));
     }
-    Ok((put_together(&lines, texts), lines.len()))
+    Ok((put_together(&lines, texts), lines))
 }
 
 /// The list of packages, and the texts in the order of the first package that contains each.
-fn put_together(lines: &[(String, String, String)], texts: Texts) -> String {
+fn put_together(lines: &[Line], texts: Texts) -> String {
     let place = |name: &str| lines.iter().position(|(known, ..)| known == name).unwrap_or(lines.len());
     let mut texts: Vec<_> = texts.into_iter().collect();
     texts.sort_by_cached_key(|(text, users)| (users.iter().map(|user| place(user)).min(), text.clone()));

@@ -8,6 +8,7 @@ mod trial;
 use crate::command;
 use crate::dist;
 use crate::report::{Outcome, Report};
+use crate::sbom;
 use crate::third_party;
 use crate::venv;
 use crate::workspace::Workspace;
@@ -166,12 +167,14 @@ fn documents(workspace: &Workspace, stage: &Path, program: &Path, package: &Pack
     let (_, date) =
         command::output(Command::new("date").args(["--utc", "--rfc-email", "--date"]).arg(format!("@{time}")))?;
     write(&doc.join("changelog"), package.changelog(date.trim()).as_bytes())?;
-    copy(&workspace.path(third_party::FILE), &doc.join(third_party::FILE))?;
+    for name in [third_party::FILE, sbom::FILE] {
+        copy(&workspace.path(name), &doc.join(name))?;
+    }
     let licence = workspace.path("LICENSE-MIT");
     let licence = std::fs::read_to_string(&licence).map_err(|error| format!("{}: {error}", licence.display()))?;
     write(&doc.join("copyright"), control::copyright(&licence).as_bytes())?;
     let pages = std::fs::read_dir(&manual).map_err(|error| format!("{}: {error}", manual.display()))?;
-    let large = ["changelog", "CHANGELOG.md", third_party::FILE].map(|name| doc.join(name));
+    let large = ["changelog", "CHANGELOG.md", third_party::FILE, sbom::FILE].map(|name| doc.join(name));
     let files = pages.flatten().map(|entry| entry.path()).chain(large);
     command::run(Command::new("gzip").args(["-9", "--no-name"]).args(files))
 }
