@@ -289,7 +289,10 @@ fn the_variants_of_robot_yaml_are_read() {
     let kinds: Vec<&str> = robot.joints.iter().map(|joint| joint.kind.name()).collect();
     assert_eq!((kinds[2], kinds[3], robot.joints[3].limits.position), ("fixed", "ball", None));
     for (text, expected) in [
-        ("closed_loop: []\njoint_name: [hip]", "1:1: joint_type is null, expected one type for each joint of joint_name (1)"),
+        (
+            "closed_loop: []\njoint_name: [hip]",
+            "1:1: joint_type is null, expected one type for each joint of joint_name (1)",
+        ),
         ("closed_loop: []\njoint_name: [hop]\njoint_type: [FIXED]", "2:14: joint_name[0] is `hop`, expected a joint"),
         (
             "closed_loop: []\njoint_name: [hip]\njoint_type: [SCREW]",
