@@ -35,10 +35,11 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
         let mut cargo = workspace.cargo(&["test", "--package", "mozzi-sim"]);
         command::outcome(cargo.args(["--", "--ignored", "--nocapture"]))
     });
-    report.step("repairs of 200 faults, and of none", || {
+    report.step("repairs of 200 faults, of none, and of published robots", || {
         let mut cargo = workspace.cargo(&["test", "--package", "mozzi-urdf", "--test", "all"]);
         cargo.envs(oracles::robots(workspace).map(|robots| ("MOZZI_ROBOTS", robots)));
-        command::outcome(cargo.args(["--", "--ignored", "--nocapture", "repairs"]))
+        cargo.envs(oracles::folder(workspace).map(|oracles| ("MOZZI_ORACLES", oracles)));
+        command::outcome(cargo.args(["--", "--ignored", "--nocapture", "repairs", "published"]))
     });
     report.step("accuracy at 1000 states", || {
         let page = workspace.path(FOLDER).join("accuracy.md");

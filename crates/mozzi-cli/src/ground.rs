@@ -115,7 +115,10 @@ impl GroundArguments {
         let found = contact_points(model, &shapes.shapes, Path::new(&robot.model), None, (given, restitution));
         found.left_out.iter().for_each(|reason| failure::note(&format!("{}: {reason}", self.flag())));
         if !shapes.soft.is_empty() {
-            let listed = shapes.soft.iter().map(|(name, count)| format!("{name} ({count} geoms)"));
+            let listed = shapes.soft.iter().map(|(name, count)| match count {
+                1 => format!("{name} (1 geom)"),
+                _ => format!("{name} ({count} geoms)"),
+            });
             let listed = listed.collect::<Vec<_>>().join(", ");
             failure::note(&format!("{}: not used, since contacts are rigid: {listed}", self.flag()));
         }

@@ -112,7 +112,22 @@ fn codes_are_explained() {
     assert!(all.contains("\n  zero_axis\n") && all.contains("\n  missing_limit\n"), "{all}");
     let page = common::text(&["explain", "zero_axis"]);
     assert!(page.starts_with("mozzi::urdf::zero_axis\n\n") && page.contains("length 0"), "{page}");
+    assert!(
+        page.contains("\nWhy it matters: A rotation about 0 0 0 is not defined") && page.contains("Severity: error\n")
+    );
+    let [bad, good] = ["Bad:", "Good:"].map(|start| page.find(&format!("\n{start}\n")).expect("both examples"));
+    let at = |line: &str| page.find(&format!("\n    <axis xyz=\"{line}\"/>\n")).expect("a line of both files");
+    assert!(bad < at("0 0 0") && at("0 0 0") < good && good < at("0 1 0"), "{page}");
+    assert!(page[bad..good].contains("--> arm.urdf:14:16") && page[good..].contains("\nRemedy: the axis of a joint"));
     assert_eq!(common::text(&["explain", "mozzi::urdf::zero_axis"]), page);
+    let shared = common::text(&["explain", "mozzi::sdf::unknown_link"]);
+    assert!(shared.starts_with("mozzi::sdf::unknown_link\n\n") && shared.contains("link=\"bse\""), "{shared}");
+    for code in all.lines().filter_map(|line| line.strip_prefix("  ")) {
+        let page = common::text(&["explain", code]);
+        let parts = ["\nWhy it matters: ", "\nSeverity: ", "\nBad:\n", "\nGood:\n", "\nRemedy: "];
+        let places = parts.map(|part| page.find(part));
+        assert!(places.is_sorted() && places[0].is_some(), "{page}");
+    }
     let page = common::text(&["explain", "xacro"]).replace('\n', " ");
     assert!(page.contains("`mozzi xacro robot.xacro name:=value -o robot.urdf`"), "{page}");
     wrong(&["explain", "zero-axes"], &["`zero-axes` is not the code", "did you mean `zero_axis`?"]);

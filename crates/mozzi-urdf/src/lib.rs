@@ -78,6 +78,7 @@ pub use report::explain::{codes, explain, nearest_code, remedy};
 pub use report::pretty::{Style, pretty};
 pub use report::spelling::did_you_mean;
 pub use report::visible::visible;
+pub use report::why::why;
 pub use settings::{Policy, Settings};
 pub use text::expansion::{expanded, taken_from_host};
 pub use urdf::expressible::expressible;

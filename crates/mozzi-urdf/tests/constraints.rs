@@ -289,14 +289,17 @@ fn the_variants_of_robot_yaml_are_read() {
     let kinds: Vec<&str> = robot.joints.iter().map(|joint| joint.kind.name()).collect();
     assert_eq!((kinds[2], kinds[3], robot.joints[3].limits.position), ("fixed", "ball", None));
     for (text, expected) in [
-        ("closed_loop: []\njoint_name: [hip]", "1:1: joint_type is null, expected one type for each of the 1 joints"),
+        (
+            "closed_loop: []\njoint_name: [hip]",
+            "1:1: joint_type is null, expected one type for each joint of joint_name (1)",
+        ),
         ("closed_loop: []\njoint_name: [hop]\njoint_type: [FIXED]", "2:14: joint_name[0] is `hop`, expected a joint"),
         (
             "closed_loop: []\njoint_name: [hip]\njoint_type: [SCREW]",
             "3:14: joint_type[0] is `SCREW`, expected SPHERICAL",
         ),
         ("closed_loop: [[b, d]]\ntype: [5d]", "2:8: type[0] is `5d`, expected `6d`"),
-        ("closed_loop: [[b, d]]\ntype: [6d, 6d]", "expected one type for each of the 1 pairs"),
+        ("closed_loop: [[b, d]]\ntype: [6d, 6d]", "expected one type for each pair of closed_loop (1)"),
         ("closed_loop: [[b, d]]\ntyp: [6d]", "`typ` is not known"),
     ] {
         let said = read(text).unwrap_err().to_string();

@@ -2,7 +2,7 @@
 
 use crate::directives::{self, Asked};
 use crate::links::{Page, Sources};
-use crate::map::Map;
+use crate::map::{Map, with_diagnostics};
 use crate::robots::Robots;
 use crate::text::{self, Part};
 use crate::{Place, commands, math, quantities, reference};
@@ -50,13 +50,14 @@ pub fn assemble(place: &Place) -> Result<Assembled, Vec<String>> {
     let mut problems = Vec::new();
     let mut chapters = own_chapters(place, &src, &mut made, &mut problems).map_err(one)?;
     let names: Vec<String> = chapters.iter().map(|chapter| chapter.page.clone()).collect();
-    let map = Map::new(&names);
-    for (file, page) in Map::imported() {
-        let mut text = text::read(&place.root.join(file)).map_err(one)?;
+    let imported = Map::imported(&place.root).map_err(one)?;
+    let map = Map::new(&names, &imported);
+    for (file, page) in imported {
+        let mut text = text::read(&place.root.join(&file)).map_err(one)?;
         if page == "reference/quantities.md" {
             text = quantities::with_each(&place.root, &text).map_err(one)?;
         }
-        chapters.push(Chapter { file: file.into(), page: page.into(), text });
+        chapters.push(Chapter { file, page, text });
     }
     for (page, text) in reference::pages(place, &mut made.sources)? {
         text::write(&src.join(page), text).map_err(one)?;
@@ -74,6 +75,10 @@ pub fn assemble(place: &Place) -> Result<Assembled, Vec<String>> {
                 String::new()
             }
         });
+        let rewritten = match page.as_str() {
+            "SUMMARY.md" => with_diagnostics(&place.root, &rewritten).map_err(one)?,
+            _ => rewritten,
+        };
         text::write(&src.join(page), rewritten).map_err(one)?;
         made.chapters += usize::from(page != "SUMMARY.md");
     }

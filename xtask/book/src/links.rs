@@ -67,7 +67,7 @@ impl Page<'_> {
             return Ok(format!("{up}{page}{fragment}"));
         }
         let at = self.root.join(&file);
-        let is_picture = ["svg", "png"].iter().any(|ending| file.ends_with(&format!(".{ending}")));
+        let is_picture = ["svg", "png", "webp"].iter().any(|ending| file.ends_with(&format!(".{ending}")));
         if is_picture && at.is_file() {
             let bytes = std::fs::read(&at).map_err(|error| format!("{file}: {error}"))?;
             let name = file.rsplit('/').next().unwrap_or(&file);

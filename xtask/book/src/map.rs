@@ -1,9 +1,11 @@
 //! Which files of the repository are which pages of the book.
 
+use crate::text;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 29] = [
+const IMPORTED: [(&str, &str); 35] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
@@ -41,6 +43,9 @@ const IMPORTED: [(&str, &str); 29] = [
     ("benches/jax/RESULTS.md", "about/times-jax.md"),
 ];
 
+/// The folder of the pages of single diagnostics, and the page of all of them.
+const DIAGNOSTICS: (&str, &str) = ("docs/diagnostics", "reference/diagnostics.md");
+
 /// Files whose place in the book is another page.
 const ALIASES: [(&str, &str); 1] = [("README.md", "index.md")];
 
@@ -50,11 +55,11 @@ pub struct Map {
 }
 
 impl Map {
-    /// With the chapters of `book/src`, named as seen from there, and generated pages.
-    pub fn new(chapters: &[String]) -> Self {
-        let imported = IMPORTED.iter().chain(&ALIASES).map(|&(from, to)| (from.to_owned(), to.to_owned()));
+    /// With the chapters of `book/src`, named as seen from there, and the imported files.
+    pub fn new(chapters: &[String], imported: &[(String, String)]) -> Self {
+        let aliases = ALIASES.map(|(from, to)| (from.to_owned(), to.to_owned()));
         let own = chapters.iter().map(|page| (format!("book/src/{page}"), page.clone()));
-        Map { pages: imported.chain(own).collect() }
+        Map { pages: imported.iter().cloned().chain(aliases).chain(own).collect() }
     }
 
     /// The page that a file of the repository is.
@@ -62,7 +67,29 @@ impl Map {
         self.pages.get(file).map(String::as_str)
     }
 
-    pub fn imported() -> impl Iterator<Item = (&'static str, &'static str)> {
-        IMPORTED.into_iter()
+    /// The files of the repository that are chapters, with their pages.
+    pub fn imported(root: &Path) -> Result<Vec<(String, String)>, String> {
+        let mut all: Vec<(String, String)> = IMPORTED.map(|(from, to)| (from.to_owned(), to.to_owned())).into();
+        for code in diagnostics(root)? {
+            all.push((format!("{}/{code}.md", DIAGNOSTICS.0), format!("reference/diagnostics/{code}.md")));
+        }
+        Ok(all)
     }
+}
+
+/// The codes of diagnostics, by their pages.
+fn diagnostics(root: &Path) -> Result<Vec<String>, String> {
+    let files = text::files(&root.join(DIAGNOSTICS.0))?;
+    let mut codes: Vec<String> =
+        files.iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect();
+    codes.sort();
+    Ok(codes)
+}
+
+/// The summary with the pages of single diagnostics below the page of all of them.
+pub fn with_diagnostics(root: &Path, summary: &str) -> Result<String, String> {
+    let line = summary.lines().find(|line| line.ends_with(&format!("]({})", DIAGNOSTICS.1)));
+    let line = line.ok_or_else(|| format!("SUMMARY.md has no line for {}", DIAGNOSTICS.1))?;
+    let pages = diagnostics(root)?.into_iter().map(|code| format!("\n  - [{code}](reference/diagnostics/{code}.md)"));
+    Ok(summary.replace(line, &format!("{line}{}", pages.collect::<String>())))
 }

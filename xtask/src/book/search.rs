@@ -25,7 +25,7 @@ const QUERIES: [(&str, &str); 16] = [
     ("task space", "learn/task-space.html"),
     ("homework", "learn/homework.html"),
     ("coriolis_matrix", "reference/quantities.html"),
-    ("decimal_comma", "reference/diagnostics.html"),
+    ("decimal_comma", "reference/diagnostics/decimal_comma.html"),
 ];
 
 pub fn check(workspace: &Workspace) -> Outcome {

@@ -1,10 +1,14 @@
-//! `mozzi explain`: the meaning of a diagnostic's code.
+//! `mozzi explain`: the meaning of a diagnostic's code, with a bad and a good example.
 
 use crate::failure::{Failure, Result};
 use crate::text::{page_width, width};
 use clap::Args;
-use mozzi_urdf::{explain, mjcf, nearest_code, remedy, sdf};
+use mozzi_urdf::{explain, mjcf, nearest_code, remedy, sdf, why};
 use std::collections::BTreeSet;
+
+/// The examples of all codes, written by the test of mozzi-urdf that writes docs/diagnostics: `=== CODE SEVERITY`, and
+/// the text to print.
+const EXAMPLES: &str = include_str!("explain_examples.txt");
 
 #[derive(Args, Debug)]
 pub struct ExplainArguments {
@@ -28,9 +32,18 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
                 _ if mjcf::codes().any(|code| code == short) => "mjcf",
                 _ => "sdf",
             });
-            let remedy =
-                remedy(asked).map(|text| format!("\n{}", wrapped(&format!("Remedy: {text}.")))).unwrap_or_default();
-            Ok(format!("mozzi::{language}::{short}\n\n{}{remedy}", wrapped(text)))
+            let full = format!("mozzi::{language}::{short}");
+            let mut page = format!("{full}\n\n{}", wrapped(text));
+            if let Some(why) = why(&full) {
+                page += &format!("\n{}", wrapped(&format!("Why it matters: {why}")));
+            }
+            if let Some((severity, example)) = example(&full) {
+                page += &format!("\nSeverity: {severity}\n\n{example}");
+            }
+            if let Some(remedy) = remedy(asked) {
+                page += &format!("\n{}", wrapped(&format!("Remedy: {remedy}.")));
+            }
+            Ok(page)
         }
         None => {
             let hint = match nearest_code(asked) {
@@ -40,6 +53,15 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
             Err(Failure::wrong(format!("`{asked}` is not the code of a diagnostic; {hint}")))
         }
     }
+}
+
+/// The severity and the examples of a code of one language; those of URDF or MJCF if the language shares the code.
+fn example(full: &str) -> Option<(&'static str, &'static str)> {
+    let short = full.rsplit("::").next().unwrap_or(full);
+    let of = |code: &str| {
+        EXAMPLES.split("=== ").find_map(|part| part.strip_prefix(code)?.strip_prefix(' ')?.split_once('\n'))
+    };
+    of(full).or_else(|| ["urdf", "mjcf"].iter().find_map(|language| of(&format!("mozzi::{language}::{short}"))))
 }
 
 /// All codes, of any language.

@@ -13,7 +13,7 @@ pub fn contents(at: &At, robot: &Description) -> Result<Contents, Wrong> {
     // without types, the frames coincide
     let each = if kinds.is_null() { Vec::new() } else { kinds.list()? };
     if each.len() != pairs.len() && !kinds.is_null() {
-        return kinds.wrong(&format!("one type for each of the {} pairs of closed_loop", pairs.len()));
+        return kinds.wrong(&format!("one type for each pair of closed_loop ({})", pairs.len()));
     }
     let mut constraints = Vec::new();
     for (k, pair) in pairs.iter().enumerate() {
@@ -37,7 +37,7 @@ pub fn retyped(at: &At, robot: &Description) -> Result<Vec<(usize, JointKind)>, 
     let list = |key| if at.get(key).is_null() { Ok(Vec::new()) } else { at.get(key).list() };
     let (names, types) = (list("joint_name")?, list("joint_type")?);
     if names.len() != types.len() {
-        return at.get("joint_type").wrong(&format!("one type for each of the {} joints of joint_name", names.len()));
+        return at.get("joint_type").wrong(&format!("one type for each joint of joint_name ({})", names.len()));
     }
     let each = names.iter().zip(&types).map(|(name, kind)| {
         let joint = name.text()?;

@@ -5,6 +5,7 @@ use super::attributes::Item;
 use super::{Model, Wanted, is_mjcf, read_pages};
 use crate::report::error::LoadError;
 use crate::report::finding::Findings;
+use crate::report::spelling::counted;
 use crate::text::context::Context;
 use crate::text::dialect::Dialect;
 use crate::text::element::Element;
@@ -163,7 +164,8 @@ impl<'a> Model<'a> {
                 actuation.controls.insert(name.clone(), found);
             } else if self.options.actuation && !value.text.trim().is_empty() {
                 let (name, text) = (shown(name), shown(value.text));
-                let message = format!("key `{name}`: ctrl: is `{text}`, expected {expected} numbers; it is not used");
+                let expected = counted(expected, "number");
+                let message = format!("key `{name}`: ctrl: is `{text}`, expected {expected}; it is not used");
                 actuation.left_out.push(message);
             }
         }

@@ -5,6 +5,7 @@ use super::tree::{Name, Names};
 use super::vocabulary;
 use crate::report::finding::Finding;
 use crate::report::places::{Place, Places};
+use crate::report::spelling::counted;
 use crate::text::context::Context;
 use crate::text::element::{Element, Value};
 use crate::text::number::all_numbers;
@@ -101,9 +102,9 @@ pub(crate) fn add<'a>(
     let qpos0: Vec<f64> = slots.iter().flat_map(|slot| slot.qpos0.iter().copied()).collect();
     if let (true, Some(key)) = (keys.len() * qpos0.len() > MOST_POSITIONS, keys.first()) {
         let message = format!(
-            "keyframe: has {} keys of {} positions, expected at most {MOST_POSITIONS} in all",
-            keys.len(),
-            qpos0.len()
+            "keyframe: has {} of {}, expected at most {MOST_POSITIONS} in all",
+            counted(keys.len(), "key"),
+            counted(qpos0.len(), "position")
         );
         cx.findings.error("too_many_keys", key.element.span(), message);
         return added;
@@ -163,8 +164,8 @@ fn sized(
     if numbers.len() == default.len() {
         return Some(numbers.clone());
     }
-    let (found, expected) = (numbers.len(), default.len());
-    let message = format!("{}: {attribute}: has {found} numbers, expected {expected}", element.subject);
+    let (found, expected) = (counted(numbers.len(), "number"), default.len());
+    let message = format!("{}: {attribute}: has {found}, expected {expected}", element.subject);
     let help = match attribute {
         "qpos" => "one for each hinge and slide, 4 for a ball, 7 for a free joint, in the order of the file",
         _ => "one for each hinge and slide, 3 for a ball, 6 for a free joint, in the order of the file",

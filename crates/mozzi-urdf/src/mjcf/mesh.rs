@@ -139,7 +139,8 @@ impl<'a> Meshes<'a> {
             triangles = found.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
         }
         if vertices.len() < 4 {
-            return Err(format!("it has {} vertices, expected at least 4", vertices.len()));
+            let found = if vertices.len() == 1 { "1 vertex" } else { &format!("{} vertices", vertices.len()) };
+            return Err(format!("it has {found}, expected at least 4"));
         }
         for vertex in &mut vertices {
             let v = Vec3(vertex.0.map(|x| f64::from(x as f32))) - mesh.reference.p;

@@ -2,6 +2,7 @@
 
 use crate::report::diagnostic::Diagnostic;
 use crate::report::finding::Topic;
+use crate::report::spelling::counted;
 use std::collections::BTreeMap;
 
 /// The consequence of a diagnostic for the results. Warnings are in this order.
@@ -70,11 +71,7 @@ pub fn unused(diagnostics: &[Diagnostic]) -> Option<String> {
 }
 
 fn of_topic(topic: Topic, [attributes, elements]: [usize; 2]) -> String {
-    let count = |n: usize, what: &str| match n {
-        0 => None,
-        1 => Some(format!("1 {what}")),
-        n => Some(format!("{n} {what}s")),
-    };
+    let count = |n: usize, what: &str| (n > 0).then(|| counted(n, what));
     let counts: Vec<String> = count(attributes, "attribute").into_iter().chain(count(elements, "element")).collect();
     let what = match topic {
         Topic::Looks => "looks and contact",

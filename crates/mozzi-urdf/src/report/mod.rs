@@ -13,3 +13,4 @@ pub(crate) mod problem;
 pub(crate) mod repair;
 pub(crate) mod spelling;
 pub(crate) mod visible;
+pub(crate) mod why;

@@ -31,6 +31,11 @@ pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k st
     known.into_iter().find(is_longer).map(meant)
 }
 
+/// A number and its noun: "1 number", "3 numbers".
+pub(crate) fn counted(n: usize, noun: &str) -> String {
+    if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") }
+}
+
 /// "did you mean `x`?"
 pub(crate) fn meant(word: &str) -> String {
     format!("did you mean `{word}`?")

@@ -1,7 +1,7 @@
 //! An element of the text: its attributes as words and numbers, its children by name, each error reported at its place.
 
 use crate::report::finding::Finding;
-use crate::report::spelling::meant;
+use crate::report::spelling::{counted, meant};
 use crate::text::context::{Context, Unknown};
 use crate::text::number::{NotNumbers, numbers};
 use crate::text::pages::Pages;
@@ -155,8 +155,8 @@ impl<'a> Element<'a> {
         cx.findings.add(match error {
             NotNumbers::Count { found, expected } => {
                 let is_comma = value.text.contains(',');
-                let message =
-                    format!("{subject}: {name}: `{}` has {found} numbers, expected {expected}", shown(value.text));
+                let (given, found) = (shown(value.text), counted(found, "number"));
+                let message = format!("{subject}: {name}: `{given}` has {found}, expected {expected}");
                 let help = is_comma.then(|| "separate numbers by spaces".to_string());
                 Finding::error("wrong_count", value.span.clone(), message).maybe_help(help)
             }

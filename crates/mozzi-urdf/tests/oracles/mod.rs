@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::common;
-mod models;
+pub(crate) mod models;
 
 use common::{BOUND, Worst, column, derivatives, largest_square, matrix, repository, vector};
 use mozzi::accuracy::TermSizes;

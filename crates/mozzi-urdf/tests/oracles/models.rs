@@ -45,7 +45,7 @@ struct Entry {
 }
 
 /// The path below the folder of packages.
-fn name_of(path: &str) -> String {
+pub(crate) fn name_of(path: &str) -> String {
     let path = path.replace('\\', "/");
     ["/gymnasium/", "/dm_control/"]
         .iter()

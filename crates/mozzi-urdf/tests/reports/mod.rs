@@ -4,6 +4,8 @@
 //! likewise the models in `tests/broken/mjcf` and `tests/broken/sdf`. A code without a file fails the test.
 //! `MOZZI_BLESS=1 cargo test -p mozzi-urdf reports` rewrites the reports: read them before you commit them.
 
+mod excerpt;
+mod mends;
 mod page;
 
 use mozzi_urdf::{LoadError, Loaded, Policy, Style, codes, explain, load_with, mjcf, parse_with, sdf};
@@ -21,6 +23,12 @@ impl Broken {
     /// The code that the file is an example of.
     fn code(&self) -> &str {
         self.name.split('-').next().unwrap_or_default()
+    }
+
+    /// Its text; bytes that are not UTF-8 are replaced.
+    fn text(&self) -> String {
+        let read = |path: &PathBuf| std::fs::read(path).expect("a file");
+        String::from_utf8_lossy(&self.path.as_ref().map_or_else(|| self.text.clone(), read)).replace("\r\n", "\n")
     }
 
     fn load(&self) -> Result<Loaded, LoadError> {
