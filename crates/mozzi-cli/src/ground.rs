@@ -69,8 +69,7 @@ impl GroundArguments {
             found.points = self.points(robot, model, &shapes, (mu, restitution))?;
         }
         let (count, planes) = (found.points.len(), found.planes.len());
-        let number = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-        let (points, planes) = (number(count, "contact point"), number(planes, "plane"));
+        let (points, planes) = (counted(count, "contact point"), counted(planes, "plane"));
         let cost = match count > MANY {
             true => "; each costs time at every step, --contact FRAME takes fewer",
             false => "",
@@ -115,10 +114,7 @@ impl GroundArguments {
         let found = contact_points(model, &shapes.shapes, Path::new(&robot.model), None, (given, restitution));
         found.left_out.iter().for_each(|reason| failure::note(&format!("{}: {reason}", self.flag())));
         if !shapes.soft.is_empty() {
-            let listed = shapes.soft.iter().map(|(name, count)| match count {
-                1 => format!("{name} (1 geom)"),
-                _ => format!("{name} ({count} geoms)"),
-            });
+            let listed = shapes.soft.iter().map(|(name, count)| format!("{name} ({})", counted(*count, "geom")));
             let listed = listed.collect::<Vec<_>>().join(", ");
             failure::note(&format!("{}: not used, since contacts are rigid: {listed}", self.flag()));
         }
@@ -141,6 +137,11 @@ impl GroundArguments {
 const DEEPEST: f64 = 0.05;
 /// So far within a plane no base is lifted, m: rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// `1 plane`, `2 planes`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
 
 /// Moves a floating base up or down, so that its lowest contact point is on the plane that is nearest; a start that was
 /// given is lifted out of the ground only.
