@@ -39,7 +39,7 @@ you do, `mozzi bench --json` prints what can be pasted into an issue.
 
 A robot's program becomes machine code by the same lowering as on x86-64: order, allocation, segments, rows, cache and
 guards are shared (`crates/mozzi-engine/src/jit`); a machine is an assembler, a register file and what pays on it. Every
-AArch64 has NEON: 32 registers of 128 bits, so two states in `f64` and four in `f32`. SVE is told by `mozzi --version` and
+AArch64 has NEON: 32 registers of 128 bits, so two states in `f64` and four in `f32`. SVE is reported by `mozzi --version` and
 not used: most processors that have it have registers of 128 bits, too. Linux, Android and macOS run the code; elsewhere
 the kernels compute, and `engine()` says why. On macOS a program with the hardened runtime needs the entitlement
 `com.apple.security.cs.allow-jit`.

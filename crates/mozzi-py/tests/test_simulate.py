@@ -109,7 +109,7 @@ def test_wrong_arguments_are_named(ur5):
 
 def test_functions_of_all_starts(ur5):
     many, one = np.zeros((2, 3, 6)), np.zeros(6)
-    with refused(ValueError, "tau has shape (6,), expected (2, 3, 6): the torque's function is asked for all starts at once"):
+    with refused(ValueError, "tau has shape (6,), expected (2, 3, 6): the torque's function is called once for all starts"):
         ur5.simulate(many, one, 1, 10, torque=lambda t, theta, dtheta: one)
     with refused(ValueError, "tau has shape (2, 3, 5), expected (..., 6)"):
         ur5.simulate(many, one, 1, 10, torque=lambda t, theta, dtheta: theta[..., :5])

@@ -1,4 +1,4 @@
-//! Dynamics of open-chain robots in the screw notation of Lynch and Park, *Modern Robotics*:
+//! Dynamics of robots in the screw notation of Lynch and Park, *Modern Robotics*:
 //!
 //! > τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇)
 //!

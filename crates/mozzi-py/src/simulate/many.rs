@@ -213,7 +213,7 @@ impl Robots<'_> {
         robot.robot().check_shape(&answer)?;
         if answer.leading(1) != self.leading {
             let expected = shown(&[self.leading, &[self.model.n()]].concat());
-            let expected = format!("{expected}: the torque's function is asked for all starts at once");
+            let expected = format!("{expected}: the torque's function is called once for all starts");
             return Err(wrong_shape("tau", &answer.shape, expected));
         }
         answer.spread::<f64>(self.leading, 1)?;
