@@ -8,6 +8,7 @@ const FEATURES: [(&str, bool); 5] = [
     ("derive", cfg!(feature = "derive")),
     ("mcap", cfg!(feature = "mcap")),
     ("parquet", cfg!(feature = "parquet")),
+    ("pdf", cfg!(feature = "pdf")),
     ("png", cfg!(feature = "png")),
 ];
 
