@@ -132,7 +132,7 @@ enum Command {
     /// Derive the equations in symbols: M(θ), c, g, τ, T, J, … as text, LaTeX, SymPy, Python, MATLAB or Julia
     #[command(after_help = DERIVATIONS, aliases = ["equations", "symbolic"])]
     Derive(commands::derive::DeriveArguments),
-    /// Generate source text of a robot's quantities in Rust, C or CUDA; count operations
+    /// Generate source text of a robot's quantities in Rust, C or CUDA, or for CasADi; count operations
     Codegen(commands::codegen::CodegenArguments),
     /// Expand a xacro file, with values of its arguments
     Xacro(commands::xacro::XacroCommand),

@@ -3,7 +3,7 @@
 use mozzi_engine::Shape;
 
 /// The optional parts, and whether this build has them.
-const FEATURES: [(&str, bool); 5] = [
+const FEATURES: [(&str, bool); 6] = [
     ("arrow", cfg!(feature = "arrow")),
     ("derive", cfg!(feature = "derive")),
     ("mcap", cfg!(feature = "mcap")),
