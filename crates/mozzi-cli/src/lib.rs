@@ -12,6 +12,7 @@ mod edits;
 mod effect;
 mod exit;
 mod failure;
+mod figure_file;
 mod goals;
 mod ground;
 mod guess;
@@ -119,7 +120,10 @@ enum Command {
     /// Play with a robot in a browser: drop its file, drag it, simulate it in real time, read every quantity
     #[command(mut_arg("model", commands::play::model))]
     Play(commands::play::PlayArguments),
-    /// Draw a figure as SVG or PNG: trajectories, energy, phase portraits, convergence, ellipsoids
+    /// Draw the robot at one configuration as SVG, PNG or PDF, for papers
+    #[command(alias = "draw")]
+    Picture(commands::picture::PictureArguments),
+    /// Draw a figure as SVG, PNG or PDF: trajectories, energy, phase portraits, convergence, ellipsoids
     #[command(after_help = TABLES)]
     Plot(commands::plot::PlotArguments),
     /// Check a robot's file: all errors and warnings, each with its place
@@ -130,7 +134,7 @@ enum Command {
     /// Derive the equations in symbols: M(θ), c, g, τ, T, J, … as text, LaTeX, SymPy, Python, MATLAB or Julia
     #[command(after_help = DERIVATIONS, aliases = ["equations", "symbolic"])]
     Derive(commands::derive::DeriveArguments),
-    /// Generate source text of a robot's quantities in Rust, C or CUDA; count operations
+    /// Generate source text of a robot's quantities in Rust, C or CUDA, or for CasADi; count operations
     Codegen(commands::codegen::CodegenArguments),
     /// Expand a xacro file, with values of its arguments
     Xacro(commands::xacro::XacroCommand),
@@ -165,6 +169,8 @@ Examples:
   mozzi view my_robot.urdf --out arm.html
                                          the robot as one HTML file
   mozzi view double_pendulum swing.csv   a motion in the browser
+  mozzi picture ur5 --q 0,-1.2,1.5,0.3,1.1,0 --out arm.svg
+                                         a drawing for a paper
   mozzi play my_robot.urdf               drag, simulate, edit, read everything
   mozzi convert my_robot.urdf my_robot.json
                                          links, joints and the book's lists
@@ -366,6 +372,7 @@ fn run(arguments: &Arguments) -> Result<String> {
         Some(Command::Completions(arguments)) => commands::completions::run(arguments, Arguments::command()),
         Some(Command::Man(arguments)) => commands::man::run(arguments, Arguments::command()),
         Some(Command::Xacro(arguments)) => commands::xacro::run(arguments),
+        Some(Command::Picture(arguments)) => commands::picture::run(arguments),
         Some(Command::Plot(arguments)) => commands::plot::run(arguments),
         Some(Command::Play(arguments)) => commands::play::run(arguments),
         Some(Command::View(arguments)) => commands::view::run(arguments),

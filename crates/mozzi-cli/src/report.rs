@@ -25,14 +25,14 @@ const LARGE: usize = 20_000_000;
 /// Which meshes go into a page.
 #[derive(Args, Debug)]
 pub struct MeshArguments {
-    /// Meshes of the robot's file to embed in the page, if they are found
+    /// Which meshes of the robot's file are shown, if they are found
     #[arg(long, value_name = "WHICH", default_value = "visual")]
     meshes: Which,
-    /// A folder above meshes outside of the robot file's own folder and package; they are embedded as well
+    /// A folder above the meshes of the robot's file that lie outside of its own folder and package
     #[arg(long, value_name = "FOLDER")]
     mesh_root: Option<PathBuf>,
-    /// Allow a page of a xacro file that reads variables of the environment, or files outside of its folder and of
-    /// packages: their contents may be in the page
+    /// Allow an output of a xacro file that reads variables of the environment, or files outside of its folder and of
+    /// packages: their contents may be in the output
     #[arg(long)]
     allow_host: bool,
 }
@@ -89,13 +89,20 @@ impl MeshArguments {
         let Some(first) = taken.first() else { return Ok(()) };
         let more = if taken.len() > 1 { format!(" and {} more", taken.len() - 1) } else { String::new() };
         Err(Failure::wrong(format!(
-            "{} reads {first}{more}, which may then be in the page; --allow-host allows it",
+            "{} reads {first}{more}, which may then be in the output; --allow-host allows it",
             input::name(name)
         )))
     }
 
     /// The shapes of a robot with these meshes; prints what is omitted.
     pub fn drawing(&self, robot: &RobotArguments) -> Result<Drawing> {
+        let drawing = self.read(robot)?;
+        note(&drawing.notes, "; the page lists them under `?`");
+        Ok(drawing)
+    }
+
+    /// The shapes of a robot with these meshes.
+    pub fn read(&self, robot: &RobotArguments) -> Result<Drawing> {
         let name_or_path = robot.model.as_str();
         let meshes = match self.meshes {
             Which::Visual => Meshes::Visual,
@@ -106,22 +113,21 @@ impl MeshArguments {
             return Err(Failure::wrong(format!("--mesh-root is `{}`, expected a folder", folder.display())));
         }
         self.check_host(robot)?;
-        let drawing = if name_or_path == "-" {
+        if name_or_path == "-" {
             let text = input::robot_text().map_err(|error| input::cannot(name_or_path, &error))?;
             let expansion = expanded(input::name(name_or_path), text, robot.settings())?;
             let text = expansion.as_ref().map_or(text, |expansion| expansion.as_bytes());
-            Drawing::of_text(input::name(name_or_path), text, meshes)
-        } else {
-            Drawing::of_file_below(name_or_path, &robot.settings().xacro, meshes, self.mesh_root.as_deref())?
-        };
-        drawing.notes.iter().take(NOTES).for_each(|note| failure::note(note));
-        if drawing.notes.len() > NOTES {
-            failure::note(&format!(
-                "{} shapes are omitted in total; the page lists them under `?`",
-                drawing.notes.len()
-            ));
+            return Ok(Drawing::of_text(input::name(name_or_path), text, meshes));
         }
-        Ok(drawing)
+        Ok(Drawing::of_file_below(name_or_path, &robot.settings().xacro, meshes, self.mesh_root.as_deref())?)
+    }
+}
+
+/// Prints some of the sentences about omitted shapes, and the number of all; `end` says where all are.
+pub fn note(notes: &[String], end: &str) {
+    notes.iter().take(NOTES).for_each(|note| failure::note(note));
+    if notes.len() > NOTES {
+        failure::note(&format!("{} shapes are omitted in total{end}", notes.len()));
     }
 }
 

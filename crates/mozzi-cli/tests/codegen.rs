@@ -24,6 +24,15 @@ fn files_of_each_language() {
         }
         assert_eq!(told["files"].as_array().map(Vec::len), Some(files.len()));
     }
+    let casadi = ["codegen", "ur5", "--quantity", "inverse-dynamics", "--lang", "casadi", "--out", out];
+    assert!(text(&casadi).contains("ur5_casadi.c: "));
+    let written = std::fs::read_to_string(std::path::Path::new(out).join("ur5_casadi.c")).expect("a file");
+    assert!(
+        written.contains("int jac_ur5_inverse_dynamics(") && written.contains("\"./ur5_casadi.so\""),
+        "{written:.3000}"
+    );
+    let (code, said) = complaint(&[&casadi[..], &["--precision", "f32"]].concat());
+    assert!(code == 1 && said.contains("--precision is f32, expected f64"), "{said}");
     // gravity of the command line is built in; with --argument it is an argument
     let header = |more: &[&str]| {
         let arguments = ["codegen", "ur5", "--quantity", "gravity-forces", "--lang", "c", "--out", out];

@@ -30,6 +30,7 @@ mod motion;
 mod page;
 mod page_contacts;
 mod page_numbers;
+mod picture;
 mod play;
 mod plot;
 mod repairs;

@@ -61,18 +61,49 @@ fn what_cannot_be_drawn_is_said() {
     let (code, said) = complaint(&["plot", "phase", "double_pendulum", &still, "--out", "x.svg"]);
     assert_eq!(code, 1);
     assert!(said.contains("still.csv: the motion's dtheta has 0 numbers, expected 4: 2 rows of 2"), "{said}");
-    let (code, said) = complaint(&["plot", "energy", "double_pendulum", &still, "--out", "x.pdf"]);
-    assert!(code == 1 && said.contains("--out is x.pdf, expected a file that ends in .svg or .png"), "{said}");
-    let png = folder.join("figure.png");
-    let arguments = ["plot", "energy", "double_pendulum", &still, "--out", png.to_str().expect("text")];
-    if cfg!(feature = "png") {
-        let output = common::mozzi(&arguments);
-        match output.status.success() {
-            true => assert!(std::fs::read(png).expect("a picture").starts_with(b"\x89PNG\r\n")),
-            false => assert!(String::from_utf8_lossy(&output.stderr).contains("this machine has no fonts")),
+    let (code, said) = complaint(&["plot", "energy", "double_pendulum", &still, "--out", "x.html"]);
+    assert!(code == 1 && said.contains("--out is x.html, expected a file that ends in .svg, .png or .pdf"), "{said}");
+}
+
+#[test]
+fn figures_are_png_and_pdf_if_built_so() {
+    let folder = folder("plot_formats");
+    let still = file(&folder, "still.csv", "t,theta_1,theta_2\n0,0,0\n1,0,0\n");
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (svg, png, pdf) = (path("figure.svg"), path("figure.png"), path("figure.pdf"));
+    text(&["plot", "energy", "double_pendulum", &still, "--out", &svg]);
+    for (out, format, is_built) in [(&png, "png", cfg!(feature = "png")), (&pdf, "pdf", cfg!(feature = "pdf"))] {
+        let output = common::mozzi(&["plot", "energy", "double_pendulum", &still, "--out", out, "--title", "θ̇ (1)"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        match (output.status.success(), format) {
+            (false, _) if !is_built => assert!(said.contains(&format!("--features {format}")), "{said}"),
+            (false, _) => assert!(said.contains("this machine has no fonts"), "{said}"),
+            (true, "png") => check_png(&std::fs::read(out).expect("a picture"), &svg),
+            (true, _) => check_pdf(&std::fs::read(out).expect("a page")),
         }
-    } else {
-        let (code, said) = complaint(&arguments);
-        assert!(code == 1 && said.contains("--features png"), "{said}");
     }
+}
+
+/// The size is twice that of the SVG.
+fn check_png(png: &[u8], svg: &str) {
+    assert!(png.starts_with(b"\x89PNG\r\n"));
+    let size = [16, 20].map(|k| u32::from_be_bytes(png[k..k + 4].try_into().expect("four bytes")));
+    let svg = std::fs::read_to_string(svg).expect("a figure");
+    assert!(svg.contains(&format!("width=\"{}\" height=\"{}\"", size[0] / 2, size[1] / 2)), "{size:?}: {svg:.200}");
+}
+
+/// Each entry of the table of objects leads to its object, and the title is UTF-16.
+pub fn check_pdf(pdf: &[u8]) {
+    assert!(pdf.starts_with(b"%PDF-1.4\n") && pdf.ends_with(b"%%EOF\n"));
+    let text = String::from_utf8_lossy(pdf);
+    let table = text.rsplit("startxref\n").next().and_then(|rest| rest.lines().next()?.parse::<usize>().ok());
+    let table = std::str::from_utf8(&pdf[table.expect("a place")..]).expect("text");
+    let mut entries = table.lines().skip(3).take_while(|line| line.ends_with(" n "));
+    assert_eq!(table.lines().nth(1), Some("0 6"));
+    for k in 1..6 {
+        let place: usize = entries.next().expect("an entry")[..10].parse().expect("a number");
+        assert!(pdf[place..].starts_with(format!("{k} 0 obj\n").as_bytes()), "object {k}");
+    }
+    assert!(text.contains("/MediaBox [0 0 540 "), "720 px are 540 points");
+    assert!(text.contains("/Title <FEFF03B8"), "θ");
 }

@@ -30,7 +30,8 @@
 //! - [`record_quantity`] a program: without the operations that the robot's zeros and ones make superfluous, every
 //!   operation once. [`Arguments`] name the numbers of the robot that stay inputs; [`record`] takes any computation.
 //! - [`compile`] a robot's quantities for one state and for many; a [`Kernel`] is one program as machine code.
-//! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C; [`emit_into`] a folder, for `build.rs`.
+//! - [`emit`] source text of programs: Rust without `std`, C99, CUDA C; [`emit_into`] a folder, for `build.rs`;
+//!   [`emit_casadi`] functions and Jacobians for `casadi.external`.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -54,7 +55,9 @@ mod jit;
 mod many;
 mod program;
 
-pub use emit::{Block, CudaLayout, EmitError, Language, Precision, SourceFile, emit, emit_into, emit_programs};
+pub use emit::{
+    Block, CudaLayout, EmitError, Language, Precision, SourceFile, emit, emit_casadi, emit_into, emit_programs,
+};
 pub use jit::{Extent, Form, Kernel, Listing, MOST_ARRAYS, Refusal, Shape, Tally};
 pub use many::{
     Batch, BatchEnvironment, BatchGradient, BatchRollout, Compiled, Direction, Engine, Error, Number, compile,

@@ -1,6 +1,7 @@
 //! The tests in one program: each links the crate and all that it needs.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod casadi;
 mod common;
 mod compiled;
 mod compiled_simulation;

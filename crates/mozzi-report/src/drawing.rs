@@ -1,13 +1,13 @@
 //! The shapes of a robot, with the files of their meshes.
 
 use crate::base64;
-use flate2::{Compression, write::GzEncoder};
+use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use mozzi::{Model, SE3};
 use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry_with, locate, parse};
 use mozzi_urdf::{LoadError, XacroArguments, files, visible};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// A larger file is left out.
@@ -121,6 +121,18 @@ impl Drawing {
                 false
             }
         }
+    }
+
+    pub(crate) fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// The format and the content of a mesh, by its address in the robot's file.
+    pub(crate) fn mesh_file(&self, address: &str) -> Result<(&'static str, Vec<u8>), String> {
+        let mesh = self.meshes.iter().find(|mesh| mesh.address == address).ok_or("it was not read")?;
+        let mut bytes = Vec::new();
+        GzDecoder::new(&*mesh.gzip).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        Ok((mesh.format, bytes))
     }
 
     pub(crate) fn meshes_to_json(&self) -> Value {

@@ -29,6 +29,7 @@ mod error;
 pub mod figure;
 mod fit;
 mod fit_json;
+mod markup;
 mod motion;
 mod page;
 pub mod pictures;

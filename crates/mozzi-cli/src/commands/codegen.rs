@@ -14,7 +14,7 @@ use mozzi::Model;
 use mozzi::quantities::{LIST, Query};
 use mozzi_engine::{
     Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Number, Precision, Refusal, Shape, SourceFile, emit,
-    estimate, record_quantity,
+    emit_casadi, estimate, record_quantity,
 };
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub struct CodegenArguments {
     quantity: Vec<Query<'static>>,
     /// Language of the source text
     #[arg(long, value_name = "LANGUAGE", value_parser = language(), requires = "out", required_unless_present = "explain")]
-    lang: Option<Language>,
+    lang: Option<Target>,
     /// Number type of the source text, and of the machine code that is measured
     #[arg(long, default_value = "f64", value_parser = precision())]
     precision: Precision,
@@ -52,17 +52,26 @@ pub struct CodegenArguments {
     explain: bool,
 }
 
-fn language() -> impl TypedValueParser<Value = Language> {
+/// What the source text is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Target {
+    Text(Language),
+    Casadi,
+}
+
+fn language() -> impl TypedValueParser<Value = Target> {
     let value = |name, help| PossibleValue::new(name).help(help);
     let values = [
         value("rust", "One file without std, allocation or panic"),
         value("c", "C99, a header and a source"),
         value("cuda", "CUDA C, one thread per state"),
+        value("casadi", "C99 for casadi.external, with Jacobians"),
     ];
     PossibleValuesParser::new(values).map(|name| match name.as_str() {
-        "rust" => Language::Rust,
-        "c" => Language::C,
-        _ => Language::Cuda,
+        "rust" => Target::Text(Language::Rust),
+        "c" => Target::Text(Language::C),
+        "cuda" => Target::Text(Language::Cuda),
+        _ => Target::Casadi,
     })
 }
 
@@ -129,8 +138,14 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
     }
     let precision = arguments.precision;
     let files = match (arguments.lang, &arguments.out) {
-        (Some(language), Some(folder)) => {
-            let emitted = emit(&model, &queries, further, language, precision);
+        (Some(target), Some(folder)) => {
+            let emitted = match target {
+                Target::Text(language) => emit(&model, &queries, further, language, precision),
+                Target::Casadi if precision == Precision::F32 => {
+                    return Err(Failure::wrong("--precision is f32, expected f64: CasADi's functions take doubles"));
+                }
+                Target::Casadi => emit_casadi(&model, &queries, further),
+            };
             write(folder, &emitted.map_err(|error| Failure::wrong(error.to_string()))?)?
         }
         _ => Vec::new(),

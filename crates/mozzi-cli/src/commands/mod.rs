@@ -17,6 +17,7 @@ pub mod ik;
 pub mod info;
 pub mod man;
 pub mod outcome;
+pub mod picture;
 pub mod play;
 pub mod plot;
 pub mod python;

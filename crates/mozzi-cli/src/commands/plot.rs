@@ -1,7 +1,7 @@
 //! `mozzi plot`: figures for papers.
 
-use crate::columns;
 use crate::failure::{self, Failure, Result};
+use crate::figure_file::{self, OutArguments};
 use crate::json::print;
 use crate::numbers::number;
 use crate::progress::Progress;
@@ -37,16 +37,6 @@ enum What {
     Convergence(ConvergenceArguments),
     /// Manipulability and force ellipses at the end effector, at one or more configurations
     Ellipsoids(EllipsoidArguments),
-}
-
-#[derive(Args, Debug)]
-struct OutArguments {
-    /// Output file: .svg, or .png if built with the feature `png`
-    #[arg(long, value_name = "FILE.svg")]
-    out: String,
-    /// Title [default: a description of the figure]
-    #[arg(long, value_name = "TEXT")]
-    title: Option<String>,
 }
 
 #[derive(Args, Debug)]
@@ -213,39 +203,7 @@ fn told(object: &Value, robot: &RobotArguments, more: &str) -> String {
 fn save(figure: Figure, out: &OutArguments) -> Result<Value> {
     let title = out.title.clone().unwrap_or(figure.title);
     let object = json!({ "out": out.out, "title": title });
-    let svg = Figure { title, ..figure }.svg();
-    let file = &out.out;
-    let bytes = match std::path::Path::new(file).extension().and_then(|ending| ending.to_str()) {
-        Some("svg") => svg.into_bytes(),
-        Some("png") => png(&svg)?,
-        _ => return Err(Failure::wrong(format!("--out is {file}, expected a file that ends in .svg or .png"))),
-    };
-    columns::save(file, bytes)?;
+    let svg = Figure { title: title.clone(), ..figure }.svg();
+    figure_file::save(&out.out, &title, svg)?;
     Ok(object)
-}
-
-/// The figure at twice its size in points, with the fonts of this machine.
-#[cfg(feature = "png")]
-fn png(svg: &str) -> Result<Vec<u8>> {
-    use resvg::{tiny_skia, usvg};
-    let wrong = |why: String| Failure::wrong(format!("the figure cannot be drawn as PNG: {why}"));
-    let mut options = usvg::Options::default();
-    options.fontdb_mut().load_system_fonts();
-    if options.fontdb.is_empty() {
-        return Err(wrong("this machine has no fonts; .svg needs none".into()));
-    }
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|error| wrong(error.to_string()))?;
-    let size = tree.size().to_int_size().scale_by(2.0);
-    let mut pixels = size.and_then(|size| tiny_skia::Pixmap::new(size.width(), size.height()));
-    let pixels = pixels.as_mut().ok_or_else(|| wrong("it has no size".into()))?;
-    resvg::render(&tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|error| wrong(error.to_string()))
-}
-
-#[cfg(not(feature = "png"))]
-fn png(_svg: &str) -> Result<Vec<u8>> {
-    Err(Failure::wrong(
-        "--out ends in .png, but this program was built without the feature `png`; .svg works, or build it with: \
-         cargo install --path crates/mozzi-cli --features png",
-    ))
 }

@@ -22,6 +22,21 @@ impl C {
         ]
     }
 
+    /// The declarations of a function's arrays; `restrict` is that of outputs.
+    pub fn parameters(&self, function: &Emitted, restrict: &str) -> String {
+        let array = |before: &str, inside: &str, argument: &Argument| {
+            let Argument { name, length, .. } = argument;
+            // an empty array is a pointer
+            match length {
+                0 => format!("{before}{} *{name}", self.number()),
+                _ => format!("{before}{} {name}[{inside}{length}]", self.number()),
+            }
+        };
+        let inputs = function.inputs.iter().map(|input| array("const ", "", input));
+        let outputs = function.outputs.iter().map(|output| array("", restrict, output));
+        inputs.chain(outputs).collect::<Vec<_>>().join(", ")
+    }
+
     /// A loop, which compilers vectorize.
     fn bind_sines_abreast(&self, sines: &[Sines]) -> Vec<String> {
         let Some((first, count, angles)) = abreast(sines, &self.literal(0.0)) else { return Vec::new() };
@@ -87,17 +102,7 @@ impl Dialect for C {
 pub(super) fn files(source: &Source) -> Vec<SourceFile> {
     let (c, name) = (C(source.precision), &source.name);
     let prototype = |function: &Emitted, restrict: &str| {
-        let array = |before: &str, inside: &str, argument: &Argument| {
-            let Argument { name, length, .. } = argument;
-            // an empty array is a pointer
-            match length {
-                0 => format!("{before}{} *{name}", c.number()),
-                _ => format!("{before}{} {name}[{inside}{length}]", c.number()),
-            }
-        };
-        let inputs = function.inputs.iter().map(|input| array("const ", "", input));
-        let outputs = function.outputs.iter().map(|output| array("", restrict, output));
-        format!("void {name}_{}({})", function.name, inputs.chain(outputs).collect::<Vec<_>>().join(", "))
+        format!("void {name}_{}({})", function.name, c.parameters(function, restrict))
     };
 
     let guard = format!("{}_H", name.to_ascii_uppercase());
@@ -126,7 +131,7 @@ pub(super) fn files(source: &Source) -> Vec<SourceFile> {
 }
 
 /// A comment of several lines; nothing if there are no lines.
-fn comment(lines: &[String]) -> Vec<String> {
+pub(super) fn comment(lines: &[String]) -> Vec<String> {
     let spaced =
         |(k, line): (usize, &String)| format!("{} {line}", if k == 0 { "/*" } else { " *" }).trim_end().to_string();
     let mut text: Vec<String> = lines.iter().enumerate().map(spaced).collect();
@@ -137,7 +142,7 @@ fn comment(lines: &[String]) -> Vec<String> {
 }
 
 /// Emits a b + c as one instruction if the processor has it, and refuses compilers that reorder sums.
-fn helpers(source: &Source, c: &C) -> Vec<String> {
+pub(super) fn helpers(source: &Source, c: &C) -> Vec<String> {
     let (number, is_f64) = (c.number(), source.precision.is_f64());
     let mut lines = Vec::new();
     if source.has(|function| function.arity() == 3) || source.has_sines() {

@@ -5,6 +5,7 @@
 
 mod body;
 mod c;
+mod casadi;
 mod cuda;
 mod describe;
 mod dialect;
@@ -14,7 +15,8 @@ mod sin_cos;
 
 use crate::program::Function;
 use crate::program::{Arguments, record_quantity};
-use crate::program::{Program, Step};
+use crate::program::{Program, Step, TooLong};
+pub use casadi::emit_casadi;
 pub use cuda::{Block, CudaLayout};
 use dialect::{Argument, Emitted, Source};
 use mozzi::Model;
@@ -98,6 +100,8 @@ pub enum EmitError {
     Frame(mozzi::Error),
     /// The language has no such function without its standard library: tanh in Rust.
     Function(Function, Language),
+    /// A Jacobian has too many steps.
+    TooLong(TooLong),
     /// A constant is not finite in this precision.
     Constant(f64, Precision),
     /// A folder or file cannot be written.
@@ -109,6 +113,7 @@ impl fmt::Display for EmitError {
         match self {
             EmitError::Nothing => write!(f, "no quantity, expected one or more"),
             EmitError::Frame(error) => write!(f, "{error}"),
+            EmitError::TooLong(error) => write!(f, "the Jacobian: {error}"),
             EmitError::Function(function, language) => {
                 write!(f, "{function}: {language:?} has none without its standard library, expected C or CUDA")
             }
@@ -225,21 +230,27 @@ fn files(
     if functions.is_empty() {
         return Err(EmitError::Nothing);
     }
-    for step in functions.iter().flat_map(|function| &function.program.steps) {
-        match *step {
-            Step::Constant(x) if !x.is_finite() || !precision.is_f64() && !(x as f32).is_finite() => {
-                return Err(EmitError::Constant(x, precision));
-            }
-            Step::Apply(Function::Tanh, _) if language == Language::Rust => {
-                return Err(EmitError::Function(Function::Tanh, language));
-            }
-            _ => {}
-        }
-    }
+    functions.iter().try_for_each(|function| refuse(function, precision, Some(language)))?;
     let source = Source { name: names::identifier(name, "robot"), about, functions, precision };
     Ok(match language {
         Language::Rust => rust::files(&source),
         Language::C => c::files(&source),
         Language::Cuda => cuda::files(&source),
     })
+}
+
+/// An error if a function has a constant that is not finite, or an operation that the language does not have.
+fn refuse(function: &Emitted, precision: Precision, language: Option<Language>) -> Result<(), EmitError> {
+    for step in &function.program.steps {
+        match *step {
+            Step::Constant(x) if !x.is_finite() || !precision.is_f64() && !(x as f32).is_finite() => {
+                return Err(EmitError::Constant(x, precision));
+            }
+            Step::Apply(Function::Tanh, _) if language == Some(Language::Rust) => {
+                return Err(EmitError::Function(Function::Tanh, Language::Rust));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }

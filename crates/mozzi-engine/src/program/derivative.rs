@@ -57,7 +57,7 @@ fn rate_of(name: &str) -> String {
 }
 
 /// The number of outputs before the pivots, which are last and have no derivative.
-fn before_pivots(program: &Program) -> usize {
+pub(crate) fn before_pivots(program: &Program) -> usize {
     let outputs = program.outputs();
     outputs.iter().position(|output| output.name.ends_with("pivots")).unwrap_or(outputs.len())
 }

@@ -1,6 +1,7 @@
 //! The figure's text.
 
 use super::{Curve, Figure, Panel, Stroke};
+use crate::markup::{SANS, escaped};
 use std::fmt::Write;
 
 /// The width of a paper's page; all lengths are in these units.
@@ -50,7 +51,7 @@ impl Figure {
         let height = y + 4.0;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" width=\"{WIDTH}\" height=\"{height:.0}\" \
-             font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" fill=\"none\" stroke-linejoin=\"round\">\n\
+             font-family=\"{SANS}\" fill=\"none\" stroke-linejoin=\"round\">\n\
              <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{body}</svg>\n"
         )
     }
@@ -226,7 +227,7 @@ fn line(out: &mut String, points: &[[f64; 2]], curve: &Curve, on: usize) {
 }
 
 fn text(out: &mut String, [x, y]: [f64; 2], anchor: &str, size: f64, what: &str) {
-    let what = what.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let what = escaped(what);
     let _ = writeln!(
         out,
         "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"#222\">{what}</text>"

@@ -1,6 +1,7 @@
 //! Parameters as bars with intervals, before and after.
 
-use super::{escaped, sliding};
+use super::sliding;
+use crate::markup::escaped;
 use mozzi_identify::{Identification, Kind};
 use std::fmt::Write as _;
 

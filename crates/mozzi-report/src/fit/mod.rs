@@ -9,6 +9,7 @@ mod style;
 mod tables;
 
 use crate::figure::Figure;
+use crate::markup::escaped;
 use mozzi::Model;
 use mozzi_identify::judgement::Judgement;
 use mozzi_identify::{Errors, Finding, Identification, Level, Verdict};
@@ -36,11 +37,6 @@ pub fn fit_html(found: &Identification<'_>, judged: &Judgement, validations: &[(
          <style>{}</style></head>\n<body>\n{body}</main></body></html>\n",
         style::STYLE
     )
-}
-
-/// Text as HTML.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// N m or N, of each velocity; A where forces are currents.
@@ -134,14 +130,4 @@ fn noticed<'f>(all: impl Iterator<Item = &'f Finding>) -> String {
         return String::new();
     }
     format!("<section><h2>What was noticed</h2>\n<ul>\n{items}</ul></section>\n")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_escaped() {
-        assert_eq!(escaped("<b>&\""), "&lt;b&gt;&amp;&quot;");
-    }
 }

@@ -1,6 +1,7 @@
 //! All numbers, folded.
 
-use super::{escaped, units};
+use super::units;
+use crate::markup::escaped;
 use mozzi_identify::judgement::Judgement;
 use mozzi_identify::{Errors, Identification};
 use std::fmt::Write as _;

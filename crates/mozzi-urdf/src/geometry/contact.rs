@@ -1,6 +1,6 @@
 //! Points of shapes that a plane can touch.
 
-use super::vertices::extreme_vertices;
+use super::vertices::mesh_corners;
 use super::{Form, Shape, locate};
 use crate::files;
 use mozzi::model::{ContactPoint, Support};
@@ -76,7 +76,7 @@ fn read(path: &Path) -> Result<Vec<Vec3>, String> {
     let place = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let bytes = files::read(path, MOST_BYTES).map_err(|error| place(&error))?;
     let format = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    extreme_vertices(&format, &bytes).map_err(|error| place(&error))
+    mesh_corners(&format, &bytes).map_err(|error| place(&error))
 }
 
 /// The points of one shape, in the frame of its link.

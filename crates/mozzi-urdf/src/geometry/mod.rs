@@ -17,6 +17,7 @@ pub(crate) use files::Own;
 pub use files::{NotLocated, locate};
 pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
+pub use vertices::mesh_corners;
 
 use crate::XacroArguments;
 use crate::report::diagnostic::Diagnostic;

@@ -10,10 +10,13 @@ const DIRECTIONS: usize = 2000;
 
 /// The vertices of a mesh, "stl" or "obj", that are the farthest in one of 2,000 directions: vertices of its convex
 /// hull.
-pub(super) fn extreme_vertices(format: &str, file: &[u8]) -> Result<Vec<Vec3>, String> {
+///
+/// # Errors
+/// Another format, or content that is no mesh.
+pub fn mesh_corners(format: &str, file: &[u8]) -> Result<Vec<Vec3>, String> {
     let mut vertices = match format {
         "stl" | "obj" => Surface::read(format, file)?.vertices,
-        other => return Err(format!("contact points of `{other}` meshes are not read; expected stl or obj")),
+        other => return Err(format!("the vertices of `{other}` meshes are not read; expected stl or obj")),
     };
     // each once: a corner of a surface belongs to some six triangles
     let order = |a: &Vec3, b: &Vec3| {
@@ -73,14 +76,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cube_has_eight_extreme_vertices() {
+    fn a_cube_has_eight_mesh_corners() {
         let mut text = String::new();
         for k in 0..27 {
             let [x, y, z] = [k % 3, k / 3 % 3, k / 9].map(|i| f64::from(i) - 1.0);
             text += &format!("v {x} {y} {z}\n");
         }
         text += "f 1 2 3\n";
-        let found = extreme_vertices("obj", text.as_bytes()).expect("a mesh");
+        let found = mesh_corners("obj", text.as_bytes()).expect("a mesh");
         assert_eq!(found.len(), 8);
         assert!(found.iter().all(|v| v.0.iter().all(|x| x.abs() == 1.0)));
         let mut stl = vec![0; 80];
@@ -89,7 +92,7 @@ mod tests {
             stl.extend(x.to_le_bytes());
         }
         stl.extend([0, 0]);
-        assert_eq!(extreme_vertices("stl", &stl).expect("a mesh").len(), 3);
-        assert!(extreme_vertices("dae", b"<COLLADA/>").is_err());
+        assert_eq!(mesh_corners("stl", &stl).expect("a mesh").len(), 3);
+        assert!(mesh_corners("dae", b"<COLLADA/>").is_err());
     }
 }
