@@ -123,7 +123,7 @@ impl MeshArguments {
     }
 }
 
-/// Prints some of the sentences about omitted shapes, and the number of all; `end` says where all are.
+/// Prints some of the sentences about omitted shapes, and the number of all; `end` is the place where all are.
 pub fn note(notes: &[String], end: &str) {
     notes.iter().take(NOTES).for_each(|note| failure::note(note));
     if notes.len() > NOTES {

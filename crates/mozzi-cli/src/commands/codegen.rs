@@ -52,7 +52,7 @@ pub struct CodegenArguments {
     explain: bool,
 }
 
-/// What the source text is for.
+/// The program that compiles or calls the source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Target {
     Text(Language),

@@ -56,7 +56,7 @@ pub fn of(tree: &usvg::Tree, title: &str) -> Result<Vec<u8>> {
 /// The operators of a page.
 struct Content {
     text: String,
-    /// Of fills and strokes.
+    /// Opacities of fills and strokes.
     opacities: Vec<[f32; 2]>,
 }
 

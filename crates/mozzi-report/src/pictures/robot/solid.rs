@@ -20,7 +20,7 @@ const LIT: [(f64, f64); 2] = [(0.52, 0.88), (0.86, 0.97)];
 pub(super) struct Solid {
     form: Form,
     T: SE3,
-    /// Of a mesh, in its own coordinates.
+    /// A mesh's vertices, in its own coordinates.
     vertices: Vec<Vec3>,
     pub color: [f64; 3],
     /// In the picture's plane, counterclockwise.
