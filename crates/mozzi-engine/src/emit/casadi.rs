@@ -32,11 +32,10 @@ struct Sparsity {
 /// their names, sizes and sparsities. Vectors are columns; entries that are zero for every state are not stored. The
 /// function returns 1, CasADi's failed evaluation, if a pivot of a matrix that it divides by is not positive.
 ///
-/// ∂τ and ∂θ̈ by the state are those of [`InverseDynamicsDerivatives`] and [`ForwardDynamicsDerivatives`], if θ has no
-/// quaternions; all other derivatives are recorded with dual numbers or, if there are few outputs, backward. Derivatives
-/// with respect to θ are those by its own numbers, of a quaternion all four. With `arguments.derivative` there are no
-/// Jacobians. The integers are `casadi_int`, `long long int` unless the compiler defines another type: acados needs
-/// `-Dcasadi_int=int`.
+/// ∂τ and ∂θ̈ by the state are those of [`InverseDynamicsDerivatives`] and [`ForwardDynamicsDerivatives`] if θ has no
+/// quaternions; other derivatives are recorded with dual numbers or, for few outputs, backward. Derivatives by θ are
+/// by its own numbers, of a quaternion all four. With `arguments.derivative` there are no Jacobians. Integers
+/// are `casadi_int`, `long long int` unless the compiler defines another type: acados needs `-Dcasadi_int=int`.
 ///
 /// ```
 /// use mozzi::quantities::InverseDynamics;
