@@ -17,11 +17,11 @@ use std::ffi::{CStr, c_char, c_int, c_longlong};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-type Text = unsafe extern "C" fn(c_longlong) -> *const c_char;
-type Pattern = unsafe extern "C" fn(c_longlong) -> *const c_longlong;
-type Count = unsafe extern "C" fn() -> c_longlong;
-type Work = unsafe extern "C" fn(*mut c_longlong, *mut c_longlong, *mut c_longlong, *mut c_longlong) -> c_int;
-type Evaluate = unsafe extern "C" fn(*mut *const f64, *mut *mut f64, *mut c_longlong, *mut f64, c_int) -> c_int;
+type Text = extern "C" fn(c_longlong) -> *const c_char;
+type Pattern = extern "C" fn(c_longlong) -> *const c_longlong;
+type Count = extern "C" fn() -> c_longlong;
+type Work = extern "C" fn(*mut c_longlong, *mut c_longlong, *mut c_longlong, *mut c_longlong) -> c_int;
+type Evaluate = extern "C" fn(*mut *const f64, *mut *mut f64, *mut c_longlong, *mut f64, c_int) -> c_int;
 
 /// A function of a library, called as CasADi calls it.
 struct External<'l> {
@@ -30,22 +30,27 @@ struct External<'l> {
 }
 
 impl External<'_> {
+    /// The function of this ending; `F` is its type.
+    fn symbol<F: Copy>(&self, ending: &str) -> F {
+        // SAFETY: each caller gives the type that CasADi's interface has for this ending
+        unsafe { *self.library.get::<F>(format!("{}{ending}", self.name).as_bytes()).expect("a function") }
+    }
+
     fn count(&self, side: &str) -> usize {
-        let name = format!("{}_n_{side}", self.name);
-        unsafe { self.library.get::<Count>(name.as_bytes()).expect("n")() as usize }
+        self.symbol::<Count>(&format!("_n_{side}"))() as usize
     }
 
     fn names(&self, side: &str) -> Vec<String> {
-        let name = format!("{}_name_{side}", self.name);
-        let get = unsafe { self.library.get::<Text>(name.as_bytes()).expect("names") };
+        let get: Text = self.symbol(&format!("_name_{side}"));
+        // SAFETY: a name is a literal of the library
         let text = |k| unsafe { CStr::from_ptr(get(k)) }.to_str().expect("ASCII").to_string();
         (0..self.count(side) as c_longlong).map(text).collect()
     }
 
     /// Rows, columns, and the place of each entry in a full matrix by columns.
     fn pattern(&self, side: &str, k: usize) -> (usize, usize, Vec<usize>) {
-        let name = format!("{}_sparsity_{side}", self.name);
-        let numbers = unsafe { self.library.get::<Pattern>(name.as_bytes()).expect("sparsity")(k as c_longlong) };
+        let numbers = self.symbol::<Pattern>(&format!("_sparsity_{side}"))(k as c_longlong);
+        // SAFETY: a sparsity has at least three numbers, and those that its column counts announce
         let at = |k: usize| unsafe { *numbers.add(k) as usize };
         let (rows, columns) = (at(0), at(1));
         if at(2) == 1 {
@@ -60,8 +65,7 @@ impl External<'_> {
     fn evaluate(&self, inputs: &[Option<&[f64]>], is_wanted: impl Fn(usize) -> bool) -> (Vec<Vec<f64>>, c_int) {
         let mut sizes = [0; 4];
         let [arg, res, iw, w] = &mut sizes;
-        let work = format!("{}_work", self.name);
-        assert_eq!(unsafe { self.library.get::<Work>(work.as_bytes()).expect("work")(arg, res, iw, w) }, 0);
+        assert_eq!(self.symbol::<Work>("_work")(arg, res, iw, w), 0);
         assert_eq!((sizes[0] as usize, sizes[1] as usize), (self.count("in"), self.count("out")));
         let patterns: Vec<_> = (0..self.count("out")).map(|k| self.pattern("out", k)).collect();
         let mut filled: Vec<Vec<f64>> = patterns.iter().map(|(.., places)| vec![f64::NAN; places.len()]).collect();
@@ -70,8 +74,8 @@ impl External<'_> {
         let pointer = |(k, x): (usize, &mut Vec<f64>)| if is_wanted(k) { x.as_mut_ptr() } else { std::ptr::null_mut() };
         let mut res: Vec<*mut f64> = filled.iter_mut().enumerate().map(pointer).collect();
         let (mut iw, mut w) = (vec![0; sizes[2] as usize + 1], vec![f64::NAN; sizes[3] as usize + 1]);
-        let run = unsafe { self.library.get::<Evaluate>(self.name.as_bytes()).expect("function") };
-        let failed = unsafe { run(arg.as_mut_ptr(), res.as_mut_ptr(), iw.as_mut_ptr(), w.as_mut_ptr(), 0) };
+        let run: Evaluate = self.symbol("");
+        let failed = run(arg.as_mut_ptr(), res.as_mut_ptr(), iw.as_mut_ptr(), w.as_mut_ptr(), 0);
         assert!(w.last().is_some_and(|x| x.is_nan()), "it stays within its work space");
         let full = |((rows, columns, places), entries): (&(usize, usize, Vec<usize>), Vec<f64>)| {
             let mut full = vec![0.0; rows * columns];
@@ -92,6 +96,7 @@ fn library(folder: &Path, model: &Model, queries: &[Query], arguments: Arguments
     let (source, shared) = (path.to_str().expect("a path"), path.with_extension("so"));
     let flags = ["-std=c99", "-O0", "-Wall", "-Wextra", "-Werror", "-pedantic", "-shared", "-fPIC", source, "-o"];
     compile(folder, "cc", &[&flags[..], &[shared.to_str().expect("a path"), "-lm"]].concat());
+    // SAFETY: the library has no initializers
     unsafe { Library::new(shared) }.expect("a library")
 }
 

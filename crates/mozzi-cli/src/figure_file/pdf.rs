@@ -35,7 +35,7 @@ pub fn of(tree: &usvg::Tree, title: &str) -> Result<Vec<u8>> {
     ];
     let (mut file, mut places) = (b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n".to_vec(), String::new());
     for (k, object) in objects.iter().enumerate() {
-        let _ = write!(places, "{:010} 00000 n \n", file.len());
+        let _ = writeln!(places, "{:010} 00000 n ", file.len());
         file.extend(format!("{} 0 obj\n{object}", k + 1).into_bytes());
         if k + 1 == objects.len() {
             file.extend(&packed);

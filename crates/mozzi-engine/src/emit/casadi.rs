@@ -35,8 +35,8 @@ struct Sparsity {
 /// ∂τ and ∂θ̈ by the state are those of [`InverseDynamicsDerivatives`] and [`ForwardDynamicsDerivatives`], if θ has no
 /// quaternions; all other derivatives are recorded with dual numbers or, if there are few outputs, backward.
 /// Derivatives with respect to θ are those by its own numbers, of a quaternion all four. With `arguments.derivative`
-/// there are no Jacobians. The integers are `casadi_int`, `long long int` unless the compiler defines another type: acados needs
-/// `-Dcasadi_int=int`.
+/// there are no Jacobians. The integers are `casadi_int`, `long long int` unless the compiler defines another type:
+/// acados needs `-Dcasadi_int=int`.
 ///
 /// ```
 /// use mozzi::quantities::InverseDynamics;
