@@ -13,10 +13,11 @@ use crate::workspace::Workspace;
 use std::path::{Path, PathBuf};
 
 /// Pages that commands write, each with its command as the page names it.
-const WRITTEN: [(&str, &str); 13] = [
+const WRITTEN: [(&str, &str); 14] = [
     ("docs/accuracy.md", "cargo xtask accuracy"),
     ("docs/agreement.md", "cargo xtask test"),
     ("docs/arm.md", "cargo xtask jit-report"),
+    ("docs/campaign.md", "cargo xtask campaign"),
     ("docs/diagnostics.md", "cargo xtask docs"),
     ("docs/gpu.md", "cargo xtask gpu-report"),
     ("docs/published-models.md", "cargo xtask docs"),

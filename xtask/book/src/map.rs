@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 29] = [
+const IMPORTED: [(&str, &str); 36] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
@@ -28,6 +28,7 @@ const IMPORTED: [(&str, &str); 29] = [
     ("docs/format-json.md", "manual/format-json.md"),
     ("docs/agreement.md", "about/agreement.md"),
     ("docs/accuracy.md", "about/accuracy.md"),
+    ("docs/campaign.md", "about/campaign.md"),
     ("docs/published-robots.md", "about/published-robots.md"),
     ("docs/published-models.md", "about/published-models.md"),
     ("benches/RESULTS.md", "about/times.md"),
