@@ -9,10 +9,11 @@ use std::fmt::Write;
 
 const HEADER: &str = "| date | commit | first seed | robots | comparisons | numbers | findings | minutes |";
 
-/// The page with a row for this campaign after those of the page as it was.
+/// The page with a row for this campaign after those of the page as it was. A continued campaign replaces its row.
 pub fn write(before: &str, progress: &Progress, date: &str, commit: &str) -> String {
     let earlier = before.lines().skip_while(|line| *line != HEADER).skip(2).take_while(|line| line.starts_with('|'));
     let Progress { first, robots, counts, findings, seconds } = progress;
+    let earlier = earlier.filter(|line| !line.contains(&format!("| {commit} | {first} |")));
     let all = counts.sum(|_, _| true);
     let mut page = introduction();
     let _ = writeln!(page, "## Campaigns\n\n{HEADER}\n|---|---|---|---|---|---|---|---|");
@@ -134,6 +135,7 @@ mod tests {
         assert!(once.contains("| 2026-01-01 | abc | 3 | 12,345 | 0 | 0 | 0 | 0 |\n"));
         assert!(twice.contains("| 2026-01-01 | abc |") && twice.contains("| 2026-01-02 | def |"));
         assert_eq!(twice.lines().count(), once.lines().count() + 1);
+        assert_eq!(write(&twice, &progress, "2026-01-02", "def"), twice, "continued");
     }
 
     #[test]

@@ -116,13 +116,13 @@ fn step(case: &Case, k: usize) -> Option<Option<Case>> {
     Some((format!("{smaller:?}") != format!("{case:?}")).then_some(smaller))
 }
 
-/// Removes a joint and its link, if the link carries no other joint.
+/// Removes a joint and its link; what the link carried is carried by its parent.
 fn remove(case: &mut Case, k: usize) {
-    let child = case.robot.joints[k].child.clone();
-    if case.robot.joints.iter().all(|joint| joint.parent != child) {
-        case.robot.joints.remove(k);
-        case.robot.links.retain(|link| link.name != child);
+    let removed = case.robot.joints.remove(k);
+    for joint in case.robot.joints.iter_mut().filter(|joint| joint.parent == removed.child) {
+        joint.parent.clone_from(&removed.parent);
     }
+    case.robot.links.retain(|link| link.name != removed.child);
 }
 
 /// Drops what refers to links and joints that are gone.
