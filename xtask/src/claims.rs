@@ -17,6 +17,7 @@ const WRITTEN: [(&str, &str); 14] = [
     ("docs/accuracy.md", "cargo xtask accuracy"),
     ("docs/agreement.md", "cargo xtask test"),
     ("docs/arm.md", "cargo xtask jit-report"),
+    ("docs/campaign.md", "cargo xtask campaign"),
     ("docs/diagnostics.md", "cargo xtask docs"),
     ("docs/gpu.md", "cargo xtask gpu-report"),
     ("docs/mutants.md", "cargo xtask mutants"),

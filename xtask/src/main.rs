@@ -1,5 +1,5 @@
-//! `cargo xtask test | check | docs | claims | coverage | mutants | book | page | bench | accuracy | gpu-report |
-//! gpu-bench | jit-report | aarch64 | nightly | wheel | weigh | api | release | dist | deb | licences`: the same
+//! `cargo xtask test | check | docs | claims | coverage | mutants | book | page | bench | accuracy | campaign |
+//! gpu-report | gpu-bench | jit-report | aarch64 | nightly | wheel | weigh | api | release | dist | deb | licences`: the same
 //! commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
@@ -9,6 +9,7 @@ mod accuracy;
 mod advisories;
 mod bench;
 mod book;
+mod campaign;
 mod circles;
 mod claims;
 mod command;
@@ -93,6 +94,12 @@ usage: cargo xtask COMMAND
           --robots ur5,anymal:floating,FILE.urdf      only these robots, to standard output
           --quantities mass-matrix,forward-dynamics   likewise
           --no-hard                                   without the cases that are hard by design
+  campaign  compare every quantity of random robots in two ways: kernel, second way, fused, f32, program, machine code, C;
+          adds a row to docs/campaign.md and prints the smallest robot that differs
+          --robots 100000                             in all
+          --seed 1                                    the first robot's seed
+          --resume                                    continue from target/campaign/state.json
+          --seconds 600                               stop after this time
   gpu-report  count registers, spills and instructions of the GPU kernels, and the bounds that follow, into docs/gpu.md;
           installs NVRTC and nvdisasm from PyPI into target/nvidia; no GPU is needed
           --arch sm_90                                the architecture
@@ -104,7 +111,7 @@ usage: cargo xtask COMMAND
   jit-report  count the instructions of machine code for AArch64 beside x86-64's, into docs/arm.md; any machine does
   aarch64 random programs as machine code for AArch64 by qemu; skipped without qemu-user, a C compiler
           for it and rustup's target
-  nightly long simulations, accuracy at 1000 states, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
+  nightly long simulations, accuracy at 1000 states, random robots, AArch64, WebAssembly in node, fuzzing guided by coverage; hours, with a log in target/nightly
           --seconds 3600                              for each fuzz target
   wheel   build the Python package for Linux into target/wheels, install it into an empty environment, run its README and
           the notebooks
@@ -175,6 +182,7 @@ fn main() -> ExitCode {
         ["jit-report"] => one("machine code", || jit_report::write(&workspace)),
         ["aarch64"] => one("AArch64, a sample", || other_targets::aarch64_sample(&workspace)),
         ["accuracy", ref options @ ..] => accuracy(&workspace, options),
+        ["campaign", ref options @ ..] => one("campaign", || campaign::run(&workspace, options)),
         ["bench", ref options @ ..] => match bench::Options::parse(options) {
             Ok(options) => one("benchmarks", || bench::run(&workspace, &options)),
             Err(why) => {

@@ -1,7 +1,8 @@
 //! Checks that take hours: long simulations, other processors, fuzzing with and without coverage guidance, accuracy at
-//! many states. The log of a night is `target/nightly/DATE.md`; each step is written when it ends.
+//! many states, random robots. The log of a night is `target/nightly/DATE.md`; each step is written when it ends.
 
 use crate::accuracy;
+use crate::campaign;
 use crate::command;
 use crate::fuzz;
 use crate::oracles;
@@ -45,6 +46,7 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
         let page = workspace.path(FOLDER).join("accuracy.md");
         accuracy::run(workspace, &["--states", "1000", "--page", &page.to_string_lossy()])
     });
+    report.step("random robots", || robots(workspace, seconds));
     report.step("AArch64", || other_targets::aarch64(workspace));
     report.step("AArch64, to the bit", || other_targets::aarch64_bits(workspace));
     report.step("AArch64, random programs", || other_targets::aarch64_programs(workspace, seconds));
@@ -56,6 +58,16 @@ pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
         report.step(&format!("fuzzing, guided by coverage: {target}"), || guided(workspace, &target, seconds));
     }
     report.finish()
+}
+
+/// The differential campaign for this time, with other robots each night: seeds begin with the date.
+fn robots(workspace: &Workspace, seconds: u32) -> Outcome {
+    let [page, state] = ["campaign.md", "campaign.json"].map(|name| workspace.path(FOLDER).join(name));
+    let (page, state) = (page.to_string_lossy(), state.to_string_lossy());
+    let (seed, seconds) = (format!("{}00000000", today().replace('-', "")), seconds.to_string());
+    let robots = u32::MAX.to_string();
+    let options = ["--seed", &seed, "--seconds", &seconds, "--robots", &robots, "--page", &page, "--state", &state];
+    campaign::run(workspace, &options)
 }
 
 /// Random expressions, different ones each night.
@@ -95,7 +107,7 @@ fn guided(workspace: &Workspace, target: &str, seconds: u32) -> Outcome {
 }
 
 /// The date in UTC, `2026-11-23`.
-fn today() -> String {
+pub fn today() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
     date(i64::try_from(seconds / 86_400).unwrap_or_default())
 }

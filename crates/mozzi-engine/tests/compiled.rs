@@ -97,3 +97,41 @@ fn errors_are_the_models() {
     let error = compute(&compiled, ForwardDynamics.into(), &[&theta, &dtheta, &tau]).expect_err("singular");
     assert!(error.to_string().contains("singular at joint `joint3`"), "{error}");
 }
+
+/// A planar arm whose tool's axes went through rotations that cancel: what it cannot do is 10⁻¹⁷ instead of 0.
+const PLANAR: &str = r#"<robot name="planar">
+  <link name="base"/>
+  <link name="upper"><inertial><origin xyz="0.3 0 0"/><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="fore"><inertial><origin xyz="0.2 0 0"/><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="a"/><link name="b"/><link name="c"/><link name="tool"/>
+  <joint name="j1" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/></joint>
+  <joint name="j2" type="continuous"><parent link="upper"/><child link="fore"/><origin xyz="0.6 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="f1" type="fixed"><parent link="fore"/><child link="a"/><origin xyz="0.4 0 0" rpy="0.7 0 0"/></joint>
+  <joint name="f2" type="fixed"><parent link="a"/><child link="b"/><origin rpy="0 0.3 0"/></joint>
+  <joint name="f3" type="fixed"><parent link="b"/><child link="c"/><origin rpy="0 -0.3 0"/></joint>
+  <joint name="f4" type="fixed"><parent link="c"/><child link="tool"/><origin rpy="-0.7 0 0"/></joint>
+</robot>"#;
+
+#[test]
+fn a_row_that_only_rounding_moves_is_singular() {
+    let model = mozzi_urdf::parse("planar.urdf", PLANAR).expect("a robot").build().expect("a model");
+    let frame = model.frame("tool").expect("named");
+    let (theta, dtheta) = ([0.3, 0.5], [0.1, 0.2]);
+    let inputs = [&theta[..], &dtheta];
+    for (rows, is_singular) in [(&[5][..], true), (&[0, 5], true), (&[5, 3], true), (&[2], false), (&[3, 4], false)] {
+        let task = mozzi::Task { frame, coordinates: mozzi::TaskFrame::Body, rows };
+        let query = Query::from(mozzi::quantities::TaskSpaceDynamics).of_task(task);
+        let plain = model.compute(query, &inputs, &model.environment());
+        let compiled = compute(&compile(&model, &[query]).expect("its own frame"), query, &inputs);
+        for found in [plain.map(|_| ()), compiled.map(|_| ())] {
+            let is_error = matches!(found, Err(mozzi::Error::SingularTask { .. }));
+            assert_eq!(is_error, is_singular, "rows {rows:?}: {found:?}");
+        }
+        let mut outputs: Vec<Vec<f64>> = query.output_lengths(&model).map(|length| vec![0.0; length]).collect();
+        let mut slices: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+        let mut workspace = fast::Workspace::new(&model);
+        fast::evaluate(&query, &model, &inputs, &model.environment(), &mut workspace, &mut slices);
+        let found = workspace.singular(&query, &model, &theta, &mut [0.0; 4]);
+        assert_eq!(found.is_some(), is_singular, "rows {rows:?}, fast");
+    }
+}

@@ -1,4 +1,4 @@
-//! `cargo xtask accuracy`.
+//! `cargo xtask accuracy` and `cargo xtask campaign`.
 
 use clap::Parser;
 use mozzi::quantities::LIST;
@@ -11,7 +11,10 @@ use std::process::ExitCode;
 
 /// Measures the errors of every quantity in every way, and of other libraries, against wide numbers.
 #[derive(Parser)]
+#[command(args_conflicts_with_subcommands = true)]
 struct Options {
+    #[command(subcommand)]
+    command: Option<Command>,
     /// States of each robot, up to a million.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     states: u32,
@@ -42,6 +45,12 @@ struct Options {
     page: Option<PathBuf>,
 }
 
+#[derive(clap::Subcommand)]
+enum Command {
+    /// Compares every quantity of random robots in two ways.
+    Campaign(mozzi_testing::campaign::command::Options),
+}
+
 /// Largest number of states for other libraries.
 const ASKED: usize = 1000;
 /// Robots with more velocities are not sent to other libraries: their output would be too long.
@@ -51,6 +60,16 @@ const LARGEST_SECOND: usize = 13;
 
 fn main() -> ExitCode {
     let options = Options::parse();
+    if let Some(Command::Campaign(options)) = &options.command {
+        return match mozzi_testing::campaign::command::run(options) {
+            Ok(true) => ExitCode::SUCCESS,
+            Ok(false) => ExitCode::FAILURE,
+            Err(why) => {
+                eprintln!("campaign: {why}");
+                ExitCode::from(2)
+            }
+        };
+    }
     match run(&options) {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Files of the repository that are chapters as they are.
-const IMPORTED: [(&str, &str); 35] = [
+const IMPORTED: [(&str, &str); 36] = [
     ("docs/quantities.md", "reference/quantities.md"),
     ("docs/diagnostics.md", "reference/diagnostics.md"),
     ("CONVENTIONS.md", "reference/conventions.md"),
@@ -30,6 +30,7 @@ const IMPORTED: [(&str, &str); 35] = [
     ("docs/format-json.md", "manual/format-json.md"),
     ("docs/agreement.md", "about/agreement.md"),
     ("docs/accuracy.md", "about/accuracy.md"),
+    ("docs/campaign.md", "about/campaign.md"),
     ("docs/published-robots.md", "about/published-robots.md"),
     ("docs/published-models.md", "about/published-models.md"),
     ("benches/RESULTS.md", "about/times.md"),

@@ -3,11 +3,14 @@
 //! With M = LᵀDL and Y = A L⁻¹, it is G = Y D⁻¹Yᵀ; a row of Y has the sparsity of the tree. Constraints may be
 //! redundant, so that G is singular: the multipliers are found by a proximal iteration,
 //!
-//! > λ₀ = 0,  λ ← λ + (G + ρ1)⁻¹(b − Gλ),  three times,
+//! > λ₀ = 0,  λ ← λ + (G + R)⁻¹(b − Gλ),  three times,  R = diag ρ,
 //!
 //! which needs no decision about the rank and so works on registers, dual numbers and recordings. Its error in the
-//! direction of an eigenvalue σ of G is (ρ/(σ + ρ))³ (Carpentier, Budhiraja and Mansard 2021). After a step by δ, the
-//! residual b − Gλ is ρδ.
+//! direction of an eigenvalue σ of R^(−½) G R^(−½) is (1/(σ + 1))³ (Carpentier, Budhiraja and Mansard 2021, with one ρ).
+//! After a step by δ, the residual b − Gλ is Rδ.
+//!
+//! ρ is relative to the size of the row's own constraint, so that a cam of 10⁶ rad/rad and a rod of 1 m can belong to
+//! one robot; within a constraint, rows that hardly move are those that the others make redundant.
 
 use crate::dynamics::{composite_inertias, fill_mass_matrix};
 use crate::linalg::{dense_ldlt, ldlt};
@@ -19,7 +22,7 @@ use crate::workspace::{ConstraintMemory, MOST_ROWS, Workspace};
 const STEPS: usize = 3;
 
 pass! {
-/// Factors M(θ) into L and D, and G + ρ1; the memory holds both afterwards. Requires T_{i,i−1}(θ) in the workspace and
+/// Factors M(θ) into L and D, and G + diag ρ; the memory holds both afterwards. Requires T_{i,i−1}(θ) in the workspace and
 /// A in the memory.
 pub fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
@@ -47,9 +50,19 @@ pub fn factor<S: Scalar + From<C>, C: Scalar>(
     for r in 0..m {
         trace += G[r * m + r];
     }
-    *rho = trace * S::from_f64(relative_rho::<S>() / m.max(1) as f64);
-    for r in 0..m {
-        G[r * m + r] += *rho;
+    let relative = relative_rho::<S>();
+    let least = trace * S::from_f64(relative * relative / m.max(1) as f64); // rows of rounding errors
+    for tie in &model.ties.list {
+        let rows = tie.first..tie.first + tie.kind.rows();
+        let mut own = S::zero();
+        for r in rows.clone() {
+            own += G[r * m + r];
+        }
+        let own = own.mul_add(S::from_f64(relative / tie.kind.rows() as f64), least);
+        for r in rows {
+            rho[r] = own;
+            G[r * m + r] += own;
+        }
     }
     dense_ldlt::factor(G, one_over_d);
 }
@@ -109,7 +122,7 @@ fn shared<'s>(columns: &'s [usize], others: &[usize]) -> &'s [usize] {
     &columns[from..]
 }
 
-/// ρ relative to the mean diagonal entry of G: 10⁻¹⁰ for `f64`, 3 · 10⁻⁵ for `f32`.
+/// ρ relative to the mean diagonal entry of a constraint's part of G: 10⁻¹⁰ for `f64`, 3 · 10⁻⁵ for `f32`.
 fn relative_rho<S: Scalar>() -> f64 {
     let half: f64 = 0.5;
     (0..S::DIGITS * 5 / 8).fold(1.0, |x, _| x * half)
@@ -125,7 +138,7 @@ pub(crate) fn solve<S: Scalar, C: Scalar>(model: &Model<C>, memory: &mut Constra
     lambda.copy_from_slice(step);
     for _ in 1..STEPS {
         for r in 0..m {
-            step[r] = step[r] * *rho;
+            step[r] = step[r] * rho[r];
         }
         dense_ldlt::solve(G, one_over_d, step);
         for r in 0..m {

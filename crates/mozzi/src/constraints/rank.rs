@@ -19,8 +19,8 @@ pub struct ConstraintRank {
 }
 
 impl Model<f64> {
-    /// The rank of A(θ), by QR with column pivoting: rows within 10⁻⁹ of the space of the others are redundant. At a
-    /// singular θ it is less than elsewhere.
+    /// The rank of A(θ), by QR with column pivoting: rows within 10⁻⁹ of the space of the others are redundant, relative
+    /// to the largest row of their own constraint. At a singular θ it is less than elsewhere.
     ///
     /// # Errors
     /// [`Error::WrongLength`].
@@ -30,7 +30,14 @@ impl Model<f64> {
         if rows == 0 || n == 0 {
             return Ok(ConstraintRank { rows, rank: 0, freedom: n, redundant: self.constraint_row_names().collect() });
         }
-        let A = self.constraint_rows_at(theta, &alloc::vec![0.0; n]).A;
+        let mut A = self.constraint_rows_at(theta, &alloc::vec![0.0; n]).A;
+        for tie in &self.ties.list {
+            let mut own = A.rows_mut(tie.first, tie.kind.rows());
+            let largest = own.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
+            if largest > 0.0 {
+                own /= largest;
+            }
+        }
         let qr = A.transpose().col_piv_qr();
         let R = qr.unpack_r();
         let largest = R[(0, 0)].abs();

@@ -150,3 +150,29 @@ fn a_tree_has_no_constraint() {
     assert!((DVector::from_column_slice(&found[0]) - &expected).amax() < 1e-11 * expected.amax());
     assert!(found[1].is_empty());
 }
+
+/// A cam of slope 10⁶ next to a loop of metres: every row is satisfied to its own size.
+#[test]
+fn rows_of_very_different_sizes_all_hold() {
+    let tree = tree(3, 9, 0);
+    let [theta, dtheta, tau] = state(&tree, 3);
+    let loops = closed(&tree, &theta, &[Closure::Point, Closure::Distance(0.7)], 3);
+    let names: Vec<&str> =
+        loops.joints().filter(|joint| joint.kind.name() == "revolute").map(|joint| &*joint.name).collect();
+    for slope in [1.0, 1e3, 1e6] {
+        let cam = Constraint::joint("cam", names[0], names[1], [0.1, slope, -0.2 * slope, 0.0, 0.0]);
+        let model = loops.with_constraints([cam]).expect("joints");
+        let rank = model.constraint_rank(&theta).expect("lengths");
+        assert_eq!((rank.rank, rank.rows), (5, 5), "slope {slope}: {:?}", rank.redundant);
+        let moved = model.constrained_forward_dynamics(&theta, &dtheta, &tau, &model.environment()).expect("regular");
+        let (A, bias, _) = found(&model, &theta, &dtheta);
+        for r in 0..A.nrows() {
+            let (mut sum, mut size) = (bias[r], bias[r].abs());
+            for (a, x) in A.row(r).iter().zip(moved.ddtheta.iter()) {
+                sum += a * x;
+                size += (a * x).abs();
+            }
+            assert!(sum.abs() <= 1e-9 * size, "slope {slope}, row {r}: {sum} of {size}");
+        }
+    }
+}

@@ -64,7 +64,11 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
             Lambda[r * k + c] = dot(&J[c * n..][..n], &row[..n]); // Λ⁻¹ = J M⁻¹Jᵀ
         }
     }
-    ldlt::factor(dense, Lambda, pivots);
+    ldlt::factor(dense, Lambda, &mut pivots[..k]);
+    pivots[k] = S::zero();
+    for (column, &d) in columns.iter().zip(&workspace.pivots) {
+        pivots[k] += dot(&column.to_array(), &column.to_array()) / d;
+    }
     ldlt::solve(dense, Lambda, eta);
     ldlt::invert(dense, Lambda, &mut row[..k]);
 }
@@ -102,7 +106,7 @@ impl Kernel for TaskSpaceDynamics {
     fn run<S: Scalar + From<C>, C: Scalar>(c: Call<S, C>) {
         let ([theta, dtheta, ..], [Lambda, eta, ..], task) = (c.inputs, c.outputs, c.of.task());
         let Memory { workspace, tasks, .. } = c.memory;
-        let own = tasks.iter().position(|memory| memory.pivots.len() == task.rows.len()).unwrap_or_else(|| {
+        let own = tasks.iter().position(|memory| memory.rows() == task.rows.len()).unwrap_or_else(|| {
             tasks.push(TaskMemory::new(c.model, task.rows.len()));
             tasks.len() - 1
         });

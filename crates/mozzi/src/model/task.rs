@@ -60,8 +60,9 @@ pub struct TaskMemory<S = f64> {
     pub J: Vec<S>,
     /// J̇θ̇, k.
     pub dJ_dtheta: Vec<S>,
-    /// The pivots of Λ⁻¹: if one is within rounding error of the others, the task is singular. The pivots of M are in
-    /// the workspace.
+    /// The k pivots of Λ⁻¹, then Σ_j ‖S_j‖² / d_j over all six rows of J = [S_1 … S_n] and the pivots d of M, which is
+    /// what they are measured by: a pivot within rounding error of it or of the others makes the task singular. The
+    /// pivots of M are in the workspace.
     pub pivots: Vec<S>,
     /// The dense pattern: Λ⁻¹ has no structural zeros.
     pub(crate) dense: Pattern,
@@ -80,13 +81,18 @@ impl<S: Scalar> TaskMemory<S> {
         TaskMemory {
             J: vec![o; rows * n],
             dJ_dtheta: vec![o; rows],
-            pivots: vec![o; rows],
+            pivots: vec![o; rows + 1],
             dense: Pattern::new(rows, rows, core::iter::empty()),
             M: vec![o; n * n],
             h: vec![o; n],
             row: vec![o; n.max(rows)],
             columns: vec![Twist::zero(); n],
         }
+    }
+
+    /// k, the number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.dJ_dtheta.len()
     }
 
     /// Every number NaN.
@@ -117,20 +123,27 @@ fn singular_values<S: Scalar + Into<f64>>(J: &[S], rows: usize, n: usize) -> Vec
 }
 
 impl<S: Scalar + Into<f64>> TaskMemory<S> {
-    /// True if the rows are dependent: the smallest singular value of J is at most 10⁻¹² of the largest, or a pivot is
-    /// not positive. No allocation.
+    /// True if the rows are dependent or cannot move: the smallest singular value of J's k rows is at most 10⁻¹² of the
+    /// norm of all six rows, or a pivot is not positive. No allocation.
     pub(crate) fn is_singular(&self, n: usize) -> bool {
-        let (k, sigma) = (self.pivots.len(), singular_values(&self.J, self.pivots.len(), n));
-        (0..k).any(|i| !(sigma[i] > RANK * sigma[0])) || self.pivots.iter().any(|&pivot| !(pivot.into() > 0.0))
+        let (k, tolerance) = (self.rows(), self.tolerance());
+        let sigma = singular_values(&self.J, k, n);
+        (0..k).any(|i| !(sigma[i] > tolerance)) || self.pivots[..k].iter().any(|&pivot| !(pivot.into() > 0.0))
+    }
+
+    /// The singular value of J that counts as 0.
+    fn tolerance(&self) -> f64 {
+        let square = |column: &Twist<S>| -> f64 { column.to_array().into_iter().map(|x| x.into().powi(2)).sum() };
+        RANK * self.columns.iter().map(square).sum::<f64>().sqrt()
     }
 }
 
-/// The smallest ratio of singular values that counts as independent rows.
+/// The smallest part of J's norm that counts as motion of a row.
 const RANK: f64 = 1e-12;
 
 impl TaskMemory {
-    /// Checks that the rows are independent: the smallest singular value of J is above 10⁻¹² of the largest. Singular
-    /// values are computed only if a quick test of the pivots fails.
+    /// Checks that the rows are independent and can move: the smallest singular value of their J is above 10⁻¹² of the
+    /// norm of all six rows. Singular values are computed only if a quick test of the pivots fails.
     ///
     /// # Errors
     /// [`Error::SingularTask`] with the singular values.
@@ -139,9 +152,9 @@ impl TaskMemory {
             return Ok(());
         }
         if self.is_singular(n) {
-            let k = self.pivots.len();
+            let k = self.rows();
             let singular_values = singular_values(&self.J, k, n).as_slice()[..k].to_vec();
-            let tolerance = RANK * singular_values[0];
+            let tolerance = self.tolerance();
             return Err(Error::SingularTask { singular_values, tolerance, theta: theta.to_vec() });
         }
         Ok(())

@@ -21,10 +21,11 @@ pub struct ConstraintMemory<S = f64> {
     pub(crate) Y: Vec<S>,
     /// The rows of Y D⁻¹ that belong to one constraint.
     pub(crate) scaled: Vec<S>,
-    /// G, m × m, and then the factors of G + ρ1.
+    /// G, m × m, and then the factors of G + diag ρ.
     pub(crate) G: Vec<S>,
     pub(crate) one_over_d: Vec<S>,
-    pub(crate) rho: S,
+    /// ρ of each row.
+    pub(crate) rho: Vec<S>,
     /// The increment of λ.
     pub(crate) step: Vec<S>,
     /// The right-hand side, m numbers; `lambda` has m as well, `vector` n.
@@ -45,7 +46,7 @@ impl<S: Scalar> ConstraintMemory<S> {
             scaled: vec![o; MOST_ROWS * n],
             G: vec![o; m * m],
             one_over_d: vec![o; m],
-            rho: o,
+            rho: vec![o; m],
             step: vec![o; m],
             right: vec![o; m],
             lambda: vec![o; m],
@@ -57,8 +58,7 @@ impl<S: Scalar> ConstraintMemory<S> {
     pub(crate) fn fill_nan(&mut self) {
         let nan = S::from_f64(f64::NAN);
         let ConstraintMemory { A, dA_dtheta, M, Y, scaled, G, one_over_d, rho, step, right, lambda, vector } = self;
-        *rho = nan;
-        for list in [A, dA_dtheta, M, Y, scaled, G, one_over_d, step, right, lambda, vector] {
+        for list in [A, dA_dtheta, M, Y, scaled, G, one_over_d, rho, step, right, lambda, vector] {
             list.fill(nan);
         }
     }

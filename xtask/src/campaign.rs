@@ -1,0 +1,21 @@
+//! Random robots, every quantity in two ways: the program of `mozzi-testing`.
+
+use crate::command;
+use crate::nightly;
+use crate::report::Outcome;
+use crate::workspace::Workspace;
+use std::process::Command;
+
+/// The page to which a row is added.
+const PAGE: &str = "docs/campaign.md";
+
+pub fn run(workspace: &Workspace, options: &[&str]) -> Outcome {
+    let mut git = Command::new("git");
+    let commit = command::output(git.args(["rev-parse", "--short", "HEAD"]).current_dir(&workspace.root));
+    let mut cargo = workspace.cargo(&["run", "--release", "--package", "mozzi-testing", "--", "campaign"]);
+    cargo.args(["--date", &nightly::today(), "--commit", commit.map(|(_, text)| text).unwrap_or_default().trim()]);
+    if !options.iter().any(|option| option.starts_with("--page")) {
+        cargo.arg("--page").arg(workspace.path(PAGE));
+    }
+    command::outcome(cargo.args(options))
+}
