@@ -49,9 +49,7 @@ change by one rounding error, ε = 2⁻⁵² (`f32`: 2⁻²³). For quantities t
 where κ is Skeel's condition of the mass matrix, times that of A M⁻¹Aᵀ or J M⁻¹Jᵀ for constraints and tasks. A \
 difference above {LIMIT:.0} units is a finding; so is a panic or NaN. A quantity with κ above {:.0e} is skipped as \
 ill-conditioned. Constrained quantities are skipped if ‖G⁻¹‖ times the mean diagonal entry of G = A M⁻¹Aᵀ is above \
-{:.0e}: rows of very different sizes (the polynomial of a joint at a large angle; seed 7458) or almost redundant ones. The \
-kernel's proximal iteration regularises all rows alike, by 10⁻¹⁰ of that entry, so that the small rows are not \
-satisfied; this is a limit of mozzi.\n\n",
+{:.0e}: rows of very different sizes (the polynomial of a joint at a large angle) or almost redundant ones.\n\n",
         LONG[0],
         LONG[1],
         condition::LARGEST,
