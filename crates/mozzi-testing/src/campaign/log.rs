@@ -1,4 +1,4 @@
-//! What was compared, what was skipped, what differs.
+//! The log of a campaign: comparisons, skipped quantities with their reasons, differences.
 
 use crate::campaign::LIMIT;
 use serde_json::{Value, json};

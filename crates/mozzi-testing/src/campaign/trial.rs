@@ -16,7 +16,7 @@ const DRAWS: [usize; 2] = [3, 24];
 /// A unit that is smaller, relative to ε of what is given, is that of a structural zero.
 const NOTHING: f64 = 1e-9;
 
-/// The same case with all numbers changed by ε.
+/// A case whose numbers are all changed by ε.
 struct Neighbour {
     model: Model,
     numbers: Numbers,

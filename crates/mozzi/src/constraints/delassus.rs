@@ -6,7 +6,8 @@
 //! > λ₀ = 0,  λ ← λ + (G + R)⁻¹(b − Gλ),  three times,  R = diag ρ,
 //!
 //! which needs no decision about the rank and so works on registers, dual numbers and recordings. Its error in the
-//! direction of an eigenvalue σ of R^(−½) G R^(−½) is (1/(σ + 1))³ (Carpentier, Budhiraja and Mansard 2021, with one ρ).
+//! direction of an eigenvalue σ of R^(−½) G R^(−½) is (1/(σ + 1))³ (Carpentier, Budhiraja and Mansard 2021, with one
+//! ρ).
 //! After a step by δ, the residual b − Gλ is Rδ.
 //!
 //! ρ is relative to the size of the row's own constraint, so that a cam of 10⁶ rad/rad and a rod of 1 m can belong to
@@ -22,8 +23,8 @@ use crate::workspace::{ConstraintMemory, MOST_ROWS, Workspace};
 const STEPS: usize = 3;
 
 pass! {
-/// Factors M(θ) into L and D, and G + diag ρ; the memory holds both afterwards. Requires T_{i,i−1}(θ) in the workspace and
-/// A in the memory.
+/// Factors M(θ) into L and D, and G + diag ρ; the memory holds both afterwards. Requires T_{i,i−1}(θ) in the workspace
+/// and A in the memory.
 pub fn factor<S: Scalar + From<C>, C: Scalar>(
     model: &Model<C>,
     workspace: &mut Workspace<S>,

@@ -19,8 +19,8 @@ pub struct ConstraintRank {
 }
 
 impl Model<f64> {
-    /// The rank of A(θ), by QR with column pivoting: rows within 10⁻⁹ of the space of the others are redundant, relative
-    /// to the largest row of their own constraint. At a singular θ it is less than elsewhere.
+    /// The rank of A(θ), by QR with column pivoting: rows within 10⁻⁹ of the space of the others are redundant,
+    /// relative to the largest row of their own constraint. At a singular θ it is less than elsewhere.
     ///
     /// # Errors
     /// [`Error::WrongLength`].
