@@ -1,6 +1,6 @@
 //! `cargo xtask test | check | docs | claims | coverage | mutants | book | page | bench | accuracy | campaign |
-//! gpu-report | gpu-bench | jit-report | aarch64 | nightly | wheel | weigh | api | release | dist | deb | licences`: the
-//! same commands as in CI.
+//! gpu-report | gpu-bench | jit-report | aarch64 | nightly | wheel | weigh | api | release | dist | deb | licences`:
+//! the same commands as in CI.
 //!
 //! Each command is a list of steps; each step is one file. A step passes, fails or is skipped with its reason, and the
 //! list at the end shows which. A failing step does not stop the steps after it, but fails the command.
