@@ -9,7 +9,7 @@ pub const STOPPED: u8 = 130;
 /// Each code with its meaning, as in docs/command-line.md.
 const MEANINGS: [(u8, &str); 4] = [
     (SUCCESS, "the result is complete; there may be warnings and notes on standard error"),
-    (FAILED, "invalid input, no result, or an answer that something is wrong (`check`, `compare`, `identify`)"),
+    (FAILED, "invalid input, no result, or a negative result (`check`, `compare`, `identify`)"),
     (USAGE, "the command line is wrong: an unknown command or flag, or a missing value"),
     (STOPPED, "stopped by Ctrl-C; results computed so far are written"),
 ];

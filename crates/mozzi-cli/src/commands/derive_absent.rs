@@ -4,7 +4,7 @@ use crate::failure::{Failure, Result};
 use clap::Args;
 
 #[derive(Args, Debug)]
-#[command(disable_help_flag = true)]
+#[command(before_help = "Not in this program: cargo install --path crates/mozzi-cli --features derive")]
 pub struct DeriveArguments {
     /// A robot and quantities
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
