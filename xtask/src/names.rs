@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn what_does_not_exist_is_found() {
         let workspace = Workspace::find();
-        let mut of = |code: &str| problem(&workspace, "[\"docs\"]", &mut BTreeMap::new(), code);
+        let of = |code: &str| problem(&workspace, "[\"docs\"]", &mut BTreeMap::new(), code);
         assert!(of("mozzi_motion::controllers::Standing").is_none() && of("mozzi_motion::integrators").is_some());
         assert!(of("crates/mozzi/src/lib.rs").is_none() && of("crates/mozzi/src/none.rs").is_some());
         assert!(of("cargo xtask docs").is_none() && of("cargo xtask nothing").is_some());
