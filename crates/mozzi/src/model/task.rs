@@ -133,8 +133,8 @@ impl<S: Scalar + Into<f64>> TaskMemory<S> {
 
     /// The singular value of J that counts as 0.
     fn tolerance(&self) -> f64 {
-        let square = |column: &Twist<S>| -> f64 { column.to_array().into_iter().map(|x| x.into().powi(2)).sum() };
-        RANK * self.columns.iter().map(square).sum::<f64>().sqrt()
+        let numbers = self.columns.iter().flat_map(|column| column.to_array()).map(Into::<f64>::into);
+        RANK * Scalar::sqrt(numbers.map(|x| x * x).sum::<f64>())
     }
 }
 
