@@ -4,16 +4,14 @@ use crate::command;
 use crate::nightly;
 use crate::report::Outcome;
 use crate::workspace::Workspace;
-use std::process::Command;
 
 /// The page to which a row is added.
 const PAGE: &str = "docs/campaign.md";
 
 pub fn run(workspace: &Workspace, options: &[&str]) -> Outcome {
-    let mut git = Command::new("git");
-    let commit = command::output(git.args(["rev-parse", "--short", "HEAD"]).current_dir(&workspace.root));
+    let commit = workspace.git(&["rev-parse", "--short", "HEAD"]).unwrap_or_default();
     let mut cargo = workspace.cargo(&["run", "--release", "--package", "mozzi-testing", "--", "campaign"]);
-    cargo.args(["--date", &nightly::today(), "--commit", commit.map(|(_, text)| text).unwrap_or_default().trim()]);
+    cargo.args(["--date", &nightly::today(), "--commit", &commit]);
     if !options.iter().any(|option| option.starts_with("--page")) {
         cargo.arg("--page").arg(workspace.path(PAGE));
     }

@@ -8,9 +8,9 @@
 //!   which may follow the paragraph. Kinds: `test NAME`, a function of a test; `in FILE NAME`, a word of a source
 //!   file, such as a constant; `given`, a number that is chosen and not measured, such as an exercise's.
 
+use crate::documents::HISTORY;
 use crate::report::Outcome;
-use crate::workspace::Workspace;
-use std::path::{Path, PathBuf};
+use crate::workspace::{Workspace, files};
 
 /// Pages that commands write, each with its command as the page names it.
 const WRITTEN: &[(&str, &str)] = &[
@@ -30,8 +30,6 @@ const WRITTEN: &[(&str, &str)] = &[
     ("benches/RESULTS.md", "cargo xtask bench"),
     ("benches/jax/RESULTS.md", "python benches/jax/compare.py"),
 ];
-/// Pages of decisions, whose numbers were measured when they were taken.
-const HISTORY: [&str; 3] = ["docs/dependencies.md", "docs/design-notes.md", "docs/performance-log.md"];
 /// Pages whose numbers need a source each: files, and folders with all their pages.
 const PAGES: [&str; 5] = ["README.md", "CONVENTIONS.md", "crates/mozzi-py/README.md", "docs", "book/src"];
 /// Units of measured numbers.
@@ -91,7 +89,7 @@ fn run(workspace: &Workspace, prints_all: bool) -> Outcome {
 fn try_run(workspace: &Workspace, prints_all: bool) -> Result<Outcome, String> {
     let mut wrong = 0;
     for &(page, command) in WRITTEN {
-        let text = read(workspace, page)?;
+        let text = workspace.read(page)?;
         if !text.contains(command) {
             println!("{page}: does not name the command that writes it, `{command}`");
             wrong += 1;
@@ -103,18 +101,18 @@ fn try_run(workspace: &Workspace, prints_all: bool) -> Result<Outcome, String> {
     let mut sources = Sources::default();
     let (mut found, mut pages) = (0, Vec::new());
     for page in PAGES {
-        markdown(&workspace.path(page), &mut pages);
+        files(&workspace.path(page), &["md"], &mut pages);
     }
     pages.sort();
     for file in pages {
-        let name = file.strip_prefix(&workspace.root).unwrap_or(&file).to_string_lossy().replace('\\', "/");
+        let name = workspace.name_of(&file);
         if HISTORY.contains(&name.as_str())
             || WRITTEN.iter().any(|(page, _)| *page == name)
             || name.starts_with("docs/diagnostics/")
         {
             continue;
         }
-        for claim in claims(&name, &read(workspace, &name)?) {
+        for claim in claims(&name, &workspace.read(&name)?) {
             found += 1;
             let problem = match &claim.source {
                 None => Some("has no source".to_owned()),
@@ -133,20 +131,6 @@ fn try_run(workspace: &Workspace, prints_all: bool) -> Result<Outcome, String> {
     }
     let note = format!("{} written pages, {found} paragraphs with numbers", WRITTEN.len());
     Ok(if wrong == 0 { Outcome::Passed(note) } else { Outcome::Failed(format!("{wrong} without a source; {note}")) })
-}
-
-fn read(workspace: &Workspace, name: &str) -> Result<String, String> {
-    std::fs::read_to_string(workspace.path(name)).map_err(|error| format!("{name}: {error}"))
-}
-
-fn markdown(path: &Path, files: &mut Vec<PathBuf>) {
-    if path.is_file() {
-        files.extend(path.extension().is_some_and(|ending| ending == "md").then(|| path.to_path_buf()));
-        return;
-    }
-    for entry in std::fs::read_dir(path).into_iter().flatten().filter_map(Result::ok) {
-        markdown(&entry.path(), files);
-    }
 }
 
 /// The paragraphs of a page that have measured numbers outside of code, each with its source.
@@ -266,7 +250,7 @@ impl Sources {
                 let is_there = text.contains(&format!("fn {name}(")) || text.contains(&format!("def {name}("));
                 (!is_there).then(|| format!("there is no test `{name}`"))
             }
-            ["in", file, name] => match read(workspace, file) {
+            ["in", file, name] => match workspace.read(file) {
                 Ok(text) if text.contains(name) => None,
                 Ok(_) => Some(format!("{file} does not contain `{name}`")),
                 Err(why) => Some(why),
@@ -279,21 +263,11 @@ impl Sources {
 }
 
 fn all_sources(workspace: &Workspace) -> String {
-    let mut files = Vec::new();
+    let mut sources = Vec::new();
     for folder in SOURCES {
-        sources(&workspace.path(folder), &mut files);
+        files(&workspace.path(folder), &["rs", "py"], &mut sources);
     }
-    files.iter().filter_map(|file| std::fs::read_to_string(file).ok()).collect()
-}
-
-fn sources(folder: &Path, files: &mut Vec<PathBuf>) {
-    for path in std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path()) {
-        if path.is_dir() {
-            sources(&path, files);
-        } else if path.extension().is_some_and(|ending| ending == "rs" || ending == "py") {
-            files.push(path);
-        }
-    }
+    sources.iter().filter_map(|file| std::fs::read_to_string(file).ok()).collect()
 }
 
 #[cfg(test)]

@@ -6,6 +6,9 @@ use crate::workspace::Workspace;
 /// A document and its largest number of words.
 const LIMITS: [(&str, usize); 2] = [("README.md", 900), ("DESIGN.md", 2000)];
 
+/// Records of decisions: their numbers are of the day, and they may name what is gone.
+pub const HISTORY: [&str; 3] = ["docs/dependencies.md", "docs/design-notes.md", "docs/performance-log.md"];
+
 /// The page with the map of the house.
 const MAP: &str = "ARCHITECTURE.md";
 

@@ -39,7 +39,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
     let (mut broken, mut long) = (0, 0);
     let mut crates: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     for file in &files {
-        let name = file.strip_prefix(&workspace.root).unwrap_or(file).to_string_lossy().replace('\\', "/");
+        let name = workspace.name_of(file);
         let Ok(source) = std::fs::read_to_string(file) else {
             return Outcome::Failed(format!("{name} cannot be read"));
         };
@@ -112,8 +112,8 @@ fn broken_rules(name: &str, code: &str) -> Vec<(usize, String)> {
     broken
 }
 
-/// True if the line contains `word`, and not only as a part of a longer name.
-fn has_word(line: &str, word: &str) -> bool {
+/// True if the text contains `word`, and not only as a part of a longer name.
+pub fn has_word(line: &str, word: &str) -> bool {
     let in_name = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
     line.match_indices(word).any(|(at, _)| {
         let after = line[at + word.len()..].chars().next();

@@ -43,16 +43,13 @@ fn try_run(workspace: &Workspace, sample: usize, seed: usize) -> Result<Outcome,
     ]);
     let _ = command::run(mutants); // its exit code says that some were missed
     let file = workspace.path(FOLDER).join("mutants.out/outcomes.json");
-    let text = std::fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let text = workspace.read(&format!("{FOLDER}/mutants.out/outcomes.json"))?;
     let found: Value = serde_json::from_str(&text).map_err(|error| format!("{}: {error}", file.display()))?;
     let number = |what: &str| found[what].as_u64().unwrap_or_default();
     let (caught, missed, unviable) = (number("caught") + number("timeout"), number("missed"), number("unviable"));
     let share = 100.0 * caught as f64 / (caught + missed).max(1) as f64;
     let commit = workspace.git(&["rev-parse", "--short", "HEAD"]).unwrap_or_default();
     let line = format!("| {commit} | {seed} of {shards} | {caught} | {missed} | {unviable} | {share:.1} % |\n");
-    let page = workspace.path(PAGE);
-    let mut text = std::fs::read_to_string(&page).map_err(|error| format!("{PAGE}: {error}"))?;
-    text += &line;
-    std::fs::write(&page, text).map_err(|error| format!("{PAGE}: {error}"))?;
+    std::fs::write(workspace.path(PAGE), workspace.read(PAGE)? + &line).map_err(|error| format!("{PAGE}: {error}"))?;
     Ok(Outcome::Passed(format!("{caught} noticed, {missed} not, {unviable} do not compile; {FOLDER}/mutants.out")))
 }

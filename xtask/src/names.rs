@@ -1,10 +1,12 @@
 //! Names in documents must exist: paths of Rust items, files of the repository, commands of xtask, packages and test
 //! programs of `cargo`, and the targets of links in the pages that the book does not contain.
 
+use crate::documents::HISTORY;
+use crate::house_rules::has_word;
 use crate::report::Outcome;
-use crate::workspace::Workspace;
+use crate::workspace::{self, Workspace};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Files and folders with documents. Records of decisions may name what is gone.
 const DOCUMENTS: [&str; 12] = [
@@ -21,7 +23,6 @@ const DOCUMENTS: [&str; 12] = [
     "docs",
     "book/src",
 ];
-const HISTORY: [&str; 3] = ["docs/dependencies.md", "docs/design-notes.md", "docs/performance-log.md"];
 /// Folders of the repository by which a path is known.
 const FOLDERS: [&str; 9] =
     ["crates/", "docs/", "examples/", "benches/", "xtask/", "book/", "oracles/", "page/", "ros2/"];
@@ -48,19 +49,19 @@ pub fn check(workspace: &Workspace) -> Outcome {
 }
 
 fn try_check(workspace: &Workspace) -> Result<Outcome, String> {
-    let read = |name: &str| std::fs::read_to_string(workspace.path(name)).map_err(|error| format!("{name}: {error}"));
-    let usage = read("xtask/src/main.rs")?;
+    let usage = workspace.read("xtask/src/main.rs")?;
     let mut crates = BTreeMap::new();
     let (mut files, mut names, mut wrong) = (Vec::new(), 0, 0);
     for document in DOCUMENTS {
-        collect(&workspace.path(document), &["md", "txt"], &mut files);
+        workspace::files(&workspace.path(document), &["md", "txt"], &mut files);
     }
+    files.sort();
     for file in files {
-        let name = file.strip_prefix(&workspace.root).unwrap_or(&file).to_string_lossy().replace('\\', "/");
+        let name = workspace.name_of(&file);
         if HISTORY.contains(&name.as_str()) {
             continue;
         }
-        for (line, code) in codes(&read(&name)?) {
+        for (line, code) in codes(&workspace.read(&name)?) {
             names += 1;
             if let Some(problem) = problem(workspace, &usage, &mut crates, &code) {
                 println!("{name}:{line}: `{code}`: {problem}");
@@ -70,7 +71,7 @@ fn try_check(workspace: &Workspace) -> Result<Outcome, String> {
     }
     let mut links = 0;
     for name in LINKS {
-        for (line, link) in targets(&read(name)?) {
+        for (line, link) in targets(&workspace.read(name)?) {
             links += 1;
             let folder = workspace.path(name).parent().map(Path::to_path_buf).unwrap_or_default();
             if !folder.join(&link).exists() {
@@ -81,19 +82,6 @@ fn try_check(workspace: &Workspace) -> Result<Outcome, String> {
     }
     let note = format!("{names} pieces of code, {links} links");
     Ok(if wrong == 0 { Outcome::Passed(note) } else { Outcome::Failed(format!("{wrong} lead nowhere; {note}")) })
-}
-
-fn collect(path: &Path, endings: &[&str], files: &mut Vec<PathBuf>) {
-    if path.is_file() {
-        files.extend(path.extension().is_some_and(|e| endings.iter().any(|end| e == *end)).then(|| path.to_path_buf()));
-        return;
-    }
-    let mut entries: Vec<PathBuf> =
-        std::fs::read_dir(path).into_iter().flatten().filter_map(Result::ok).map(|entry| entry.path()).collect();
-    entries.sort();
-    for entry in entries {
-        collect(&entry, endings, files);
-    }
 }
 
 /// The pieces of code in a document's prose, each with its line.
@@ -173,19 +161,13 @@ fn item(workspace: &Workspace, crates: &mut BTreeMap<String, String>, path: &str
     }
     let text = crates.entry(name.clone()).or_insert_with(|| {
         let mut files = Vec::new();
-        collect(&folder, &["rs"], &mut files);
+        workspace::files(&folder, &["rs"], &mut files);
         if name == "mozzi" {
-            collect(&workspace.path("crates/mozzi-c/include"), &["h", "hpp"], &mut files); // C++ has the same namespace
+            workspace::files(&workspace.path("crates/mozzi-c/include"), &["h", "hpp"], &mut files); // C++ has the same namespace
         }
         files.iter().filter_map(|file| std::fs::read_to_string(file).ok()).collect()
     });
-    let is_word = |word: &str| {
-        text.match_indices(word).any(|(at, _)| {
-            let is_letter = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
-            !is_letter(text[..at].chars().next_back()) && !is_letter(text[at + word.len()..].chars().next())
-        })
-    };
-    segments.find(|segment| !is_word(segment)).map(|segment| format!("{name} has no `{segment}`"))
+    segments.find(|segment| !has_word(text, segment)).map(|segment| format!("{name} has no `{segment}`"))
 }
 
 #[cfg(test)]

@@ -25,10 +25,8 @@ const SEEDS: [(&str, &[&str]); 3] = [
 
 pub fn run(workspace: &Workspace, seconds: u32) -> ExitCode {
     let file = workspace.path(FOLDER).join(format!("{}.md", today()));
-    let mut git = Command::new("git");
-    let commit = command::output(git.args(["rev-parse", "HEAD"]).current_dir(&workspace.root));
-    let commit = commit.map(|(_, text)| text).unwrap_or_default();
-    let head = format!("# {}\n\ncommit {}, {seconds} s for each fuzz target\n\n", today(), commit.trim());
+    let commit = workspace.git(&["rev-parse", "HEAD"]).unwrap_or_default();
+    let head = format!("# {}\n\ncommit {}, {seconds} s for each fuzz target\n\n", today(), commit);
     let mut report = Report::with_log(file, &head);
     report.step("Python environment", || venv::prepare(workspace));
     report.step("reference numbers", || oracles::make(workspace));

@@ -4,7 +4,6 @@
 use crate::report::Outcome;
 use crate::source_text::{code_only, without_literals, without_tests};
 use crate::workspace::{Workspace, files};
-use std::path::Path;
 
 /// Beginnings of a paragraph, and what to write instead.
 const BEGINNINGS: [(&str, &str); 3] = [
@@ -28,7 +27,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
     sources.sort();
     let (mut read, mut broken) = (0, 0);
     for file in &sources {
-        let name = name_in(workspace, file);
+        let name = workspace.name_of(file);
         if !is_judged(&name) {
             continue;
         }
@@ -46,10 +45,6 @@ pub fn check(workspace: &Workspace) -> Outcome {
         0 => Outcome::Passed(format!("{read} files")),
         _ => Outcome::Failed(format!("{broken} places in {read} files: write what is printed above")),
     }
-}
-
-fn name_in(workspace: &Workspace, file: &Path) -> String {
-    file.strip_prefix(&workspace.root).unwrap_or(file).to_string_lossy().replace('\\', "/")
 }
 
 /// True for all files except tests; only `src` and the Python package of a crate are read.

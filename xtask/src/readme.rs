@@ -52,7 +52,7 @@ pub fn check(workspace: &Workspace) -> Outcome {
 
 /// README as it is, and with all parts from their sources.
 fn renewed(workspace: &Workspace) -> Result<(String, String), String> {
-    let read = |name: &str| std::fs::read_to_string(workspace.path(name)).map_err(|error| format!("{name}: {error}"));
+    let read = |name| workspace.read(name);
     let old = read(README)?;
     let parts = [
         ("speed", speed(&read(RESULTS)?)?),

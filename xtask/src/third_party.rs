@@ -81,7 +81,7 @@ fn text(workspace: &Workspace) -> Result<(String, Vec<Line>), String> {
         return Err("`cargo metadata` failed".into());
     };
     let metadata: Value = serde_json::from_str(&text).map_err(|error| format!("`cargo metadata`: {error}"))?;
-    let read = |file: &str| std::fs::read_to_string(workspace.path(file)).map_err(|error| format!("{file}: {error}"));
+    let read = |file| workspace.read(file);
     let (apache, mit, page) = (read(APACHE)?, read(MIT)?, page::unpack(&workspace.path(PAGE))?);
     let (mut lines, mut texts) = (Vec::new(), Texts::new());
 

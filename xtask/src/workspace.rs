@@ -24,6 +24,16 @@ impl Workspace {
         self.root.join(relative)
     }
 
+    /// The text of a file; the error names it.
+    pub fn read(&self, relative: &str) -> Result<String, String> {
+        std::fs::read_to_string(self.path(relative)).map_err(|error| format!("{relative}: {error}"))
+    }
+
+    /// A file's path from the root, with `/`.
+    pub fn name_of(&self, file: &Path) -> String {
+        file.strip_prefix(&self.root).unwrap_or(file).to_string_lossy().replace('\\', "/")
+    }
+
     /// The folder of cargo's build results.
     pub fn target(&self) -> PathBuf {
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| self.path("target"), |target| self.root.join(target))
@@ -76,16 +86,14 @@ impl Workspace {
     }
 }
 
-/// Adds the files of a folder and its subfolders that have one of these endings; `target` is left out.
-pub fn files(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
-    for path in entries.map(|entry| entry.path()) {
-        if path.is_dir() {
-            if path.file_name().is_some_and(|name| name != "target") {
-                files(&path, endings, found);
-            }
-        } else if path.extension().is_some_and(|ending| endings.iter().any(|known| ending == *known)) {
-            found.push(path);
-        }
+/// Adds a file, or the files of a folder and its subfolders, with one of these endings; `target` is left out.
+pub fn files(path: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+    if path.is_dir() {
+        let entries = std::fs::read_dir(path).into_iter().flatten().filter_map(Result::ok);
+        let inner =
+            entries.map(|entry| entry.path()).filter(|path| path.file_name().is_some_and(|name| name != "target"));
+        inner.for_each(|path| files(&path, endings, found));
+    } else if path.extension().is_some_and(|ending| endings.iter().any(|known| ending == *known)) {
+        found.push(path.to_path_buf());
     }
 }

@@ -9,8 +9,8 @@ use mozzi::{TaskFrame, nalgebra::DMatrix};
 /// Largest condition at which quantities are compared.
 pub const LARGEST: f64 = 1e9;
 
-/// Largest ‖G⁻¹‖ times the mean diagonal entry of G = A M⁻¹Aᵀ at which constrained quantities are compared. The kernel
-/// solves by a proximal iteration with ρ of 10⁻¹⁰ times that entry, whose error is (ρ/(σ + ρ))³ for an eigenvalue σ.
+/// Largest ‖G⁻¹‖ times the mean diagonal entry of G = A M⁻¹Aᵀ at which constrained quantities are compared. The
+/// kernel's ρ are 10⁻¹⁰ times the mean diagonal entry of each constraint; this bound does not tell constraints apart.
 pub const LARGEST_SPREAD: f64 = 1e5;
 
 /// Skeel's condition, ‖|X⁻¹| |X|‖ in the ∞-norm, of the mass matrix M, of A M⁻¹Aᵀ and of J M⁻¹Jᵀ (times the

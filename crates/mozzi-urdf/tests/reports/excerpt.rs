@@ -35,7 +35,7 @@ fn changes(bad: &[&str], good: &[&str]) -> Vec<Change> {
     let (mut found, mut b, mut g) = (Vec::new(), start, start);
     let (last_b, last_g) = (bad.len() - end, good.len() - end);
     while b < last_b || g < last_g {
-        // the nearest pair of lines from which two lines, or all that is left, are the same again
+        // the difference ends at the nearest pair of places where the next two lines, or all remaining ones, are equal
         let same = |i: usize, j: usize| i < last_b && j < last_g && bad[i] == good[j];
         let again = |i: usize, j: usize| same(i, j) && (same(i + 1, j + 1) || i + 1 == last_b && j + 1 == last_g);
         let near = (0..64).flat_map(|sum| (0..=sum).map(move |i| (b + i, g + sum - i)));
