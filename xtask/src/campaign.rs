@@ -10,7 +10,10 @@ const PAGE: &str = "docs/campaign.md";
 
 pub fn run(workspace: &Workspace, options: &[&str]) -> Outcome {
     let commit = workspace.git(&["rev-parse", "--short", "HEAD"]).unwrap_or_default();
-    let mut cargo = workspace.cargo(&["run", "--release", "--package", "mozzi-testing", "--", "campaign"]);
+    // a panic is a finding, not the end
+    let unwind = ["--config", "profile.release.panic = \"unwind\""];
+    let mut cargo = workspace.cargo(&["run", "--release", "--package", "mozzi-testing"]);
+    cargo.args(unwind).args(["--", "campaign"]);
     cargo.args(["--date", &nightly::today(), "--commit", &commit]);
     if !options.iter().any(|option| option.starts_with("--page")) {
         cargo.arg("--page").arg(workspace.path(PAGE));

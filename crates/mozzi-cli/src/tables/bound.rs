@@ -1,7 +1,7 @@
 //! Bounds on the cost of a damaged or hostile file: memory, and panics in other crates' readers.
 
 use crate::failure::{Failure, Result};
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
@@ -34,24 +34,33 @@ impl Unpacked {
 }
 
 thread_local! {
-    static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
+    /// The file that another crate reads.
+    static FILE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 static HOOK: Once = Once::new();
 
-/// Calls another crate's reader: a panic on damaged bytes becomes an error of the file.
+/// Calls another crate's reader: a panic on damaged bytes becomes an error of the file. Where panics abort (the profile
+/// `release`; `dist`, of packages, unwinds), the error is printed and the program ends here.
 pub fn caught<T>(file: &str, read: impl FnOnce() -> Result<T>) -> Result<T> {
     HOOK.call_once(|| {
         let before = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |panic| {
-            if !IS_CAUGHT.get() {
-                before(panic);
+        std::panic::set_hook(Box::new(move |panic| match FILE.with_borrow(Clone::clone) {
+            Some(file) if cfg!(panic = "abort") => {
+                eprintln!("error: {}", damaged(&file));
+                std::process::exit(1);
             }
+            Some(_) => {}
+            None => before(panic),
         }));
     });
-    let outside = IS_CAUGHT.replace(true);
+    let outside = FILE.replace(Some(file.to_owned()));
     let found = catch_unwind(AssertUnwindSafe(read));
-    IS_CAUGHT.set(outside);
-    found.unwrap_or_else(|_| Err(Failure::wrong(format!("{file} is damaged: its content contradicts itself"))))
+    FILE.set(outside);
+    found.unwrap_or_else(|_| Err(Failure::wrong(damaged(file))))
+}
+
+fn damaged(file: &str) -> String {
+    format!("{file} is damaged: its content contradicts itself")
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ fn trees() {
         (
             robot(&[("j", "a", "b"), ("k", "a", "c"), ("l", "b", "§c")]),
             "loop_closure",
-            "joint `l`: child: link `c` is already the child of joint `k`: a closed loop, which mozzi does not compute; expected a tree",
+            "joint `l`: child: link `c` is already the child of joint `k`, which closes a loop; expected a tree, whose loops constraints close",
         ),
         (
             robot(&[("j", "a", "b"), ("k", "b", "c"), ("l", "c", "a")]).replacen('<', "<§", 1).leak(),

@@ -43,7 +43,7 @@ impl Report<'_> {
                 complete = false;
             } else if let Some(first) = parent_joint[child] {
                 let message = format!(
-                    "link `{}` is already the child of joint `{}`: a closed loop, which mozzi does not compute; expected a tree",
+                    "link `{}` is already the child of joint `{}`, which closes a loop; expected a tree, whose loops constraints close",
                     joint.child, d.joints[first].name
                 );
                 self.error(Element::Joint(i), "child", "loop_closure", message);
