@@ -55,6 +55,34 @@ impl EditArguments {
     }
 }
 
+/// The robot with the rotors of `--coupled`, each from a text "JOINT[=RATIO],JOINT[=RATIO]".
+pub fn coupled(robot: &Model, texts: &[String]) -> Result<Model> {
+    let mut robot = robot.clone();
+    for text in texts {
+        let mut gears = Vec::new();
+        for part in text.split(',') {
+            let (joint, ratio) = match part.split_once('=') {
+                Some((joint, ratio)) => (joint.trim(), number(format!("--coupled {joint}"), ratio)?),
+                None => (part.trim(), 1.0),
+            };
+            if !robot.description().joints.iter().any(|one| one.name == joint) {
+                let names: Vec<&str> = robot.joint_names().collect();
+                return Err(Failure::wrong(format!(
+                    "--coupled {text}: there is no joint `{joint}`; the robot has {}",
+                    names.join(", ")
+                )));
+            }
+            gears.push((joint, ratio));
+        }
+        if gears.len() < 2 {
+            return Err(Failure::wrong(format!("--coupled {text}: one joint, expected two or more with commas")));
+        }
+        let name = gears.iter().map(|(joint, _)| *joint).collect::<Vec<_>>().join("+");
+        robot = robot.with_rotor(name, 0.0, &gears)?;
+    }
+    Ok(robot)
+}
+
 /// Joints with their positions, from texts "JOINT=POSITION".
 pub fn locks<'t>(texts: &'t [String], model: &Model) -> Result<Vec<(&'t str, f64)>> {
     let mut found = Vec::new();

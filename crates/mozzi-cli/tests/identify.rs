@@ -84,6 +84,16 @@ fn bad_input_is_refused() {
     assert!(why.contains("there is no joint `elbow`"), "{why}");
 }
 
+#[test]
+fn a_motion_tells_the_rotor_of_coupled_joints() {
+    let told = text(&["excite", "double_pendulum", "--duration", "5", "--coupled", "joint1,joint2=-2", "--all"]);
+    assert!(told.contains("joint1+joint2.armature") && told.contains("joint1+joint2.friction"), "{told}");
+    let (_, why) = complaint(&["excite", "double_pendulum", "--coupled", "joint1,elbow"]);
+    assert!(why.contains("--coupled joint1,elbow: there is no joint `elbow`; the robot has joint1, joint2"), "{why}");
+    let (_, why) = complaint(&["excite", "double_pendulum", "--coupled", "joint1"]);
+    assert!(why.contains("one joint, expected two or more with commas"), "{why}");
+}
+
 /// A log of a PD law whose targets are logged five rows before they act, so that gains and delay are known.
 fn controlled(folder: &Path) -> String {
     let rows = std::fs::read_to_string(motion(folder)).expect("rows");

@@ -47,6 +47,9 @@ def test_edits(ur5, random):
     assert_close(ur5.with_payload("tool0", G).mass_matrix(theta), ur5.with_payload("tool0", 1.5).mass_matrix(theta))
     J = ur5.body_jacobian(theta)
     assert_close(ur5.with_payload("tool0", 1.5).mass_matrix(theta), ur5.mass_matrix(theta) + J.T @ G @ J)
+    turned = ur5.with_rotor("wrist", {"wrist_1_joint": 1.0, "wrist_2_joint": -2.0}, armature=0.1)
+    gears = np.array([0, 0, 0, 1.0, -2.0, 0])
+    assert_close(turned.mass_matrix(theta), ur5.mass_matrix(theta) + 0.1 * np.outer(gears, gears))
     free = ur5.with_floating_base()
     assert free.is_floating and (free.n, free.nq) == (12, 13) and free.with_floating_base(False) == ur5
     base = ur5.neutral_configuration

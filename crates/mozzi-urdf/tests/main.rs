@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 mod actuators;
+mod attach;
 mod common;
 mod constraints;
 mod damaged;

@@ -67,6 +67,9 @@ pub struct ExciteArguments {
     /// Lock a joint at this position, rad or m
     #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
     lock: Vec<String>,
+    /// Joints that one rotor turns together: as in identify
+    #[arg(long, value_name = "JOINT[=RATIO],JOINT[=RATIO]", allow_hyphen_values = true)]
+    coupled: Vec<String>,
     /// List all base parameters
     #[arg(long)]
     all: bool,
@@ -91,8 +94,9 @@ enum Place {
 pub fn run(arguments: &ExciteArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let whole = arguments.robot.load()?;
-    let locks = edits::locks(&arguments.lock, &whole)?;
-    let model = if locks.is_empty() { whole } else { whole.with_locked_joints(&locks)? };
+    let coupled = edits::coupled(&whole, &arguments.coupled)?;
+    let locks = edits::locks(&arguments.lock, &coupled)?;
+    let model = if locks.is_empty() { coupled } else { coupled.with_locked_joints(&locks)? };
     workload::square("parameters", model.parameter_count())?;
     let options = arguments.options(&model)?;
     for (name, [low, high]) in model.joint_names().zip(&options.limits.position) {

@@ -233,6 +233,8 @@ class Model:
         """Return a copy with a floating or a fixed base."""
     def with_locked_joints(self, positions: Mapping[str, float]) -> Model:
         """Return a copy in which joints are fixed at given positions."""
+    def with_rotor(self, name: str, gears: Mapping[str, float], armature: float = 0.0) -> Model:
+        """Return a copy with a further rotor that several joints turn together, as in coupled wrists."""
     def to_gpu(self, *, layout: Literal["rows", "columns"] = "rows", device: int = 0) -> Gpu:
         """Return the robot on an NVIDIA GPU, whose methods compute quantities of arrays in the GPU's memory."""
     def play(

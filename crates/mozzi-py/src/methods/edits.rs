@@ -128,6 +128,40 @@ impl PyModel {
         Self::built(self.robot().model.with_locked_joints(&positions))
     }
 
+    /// Return a copy with a further rotor that several joints turn together, as in coupled wrists.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the rotor.
+    /// gears : dict of str to float
+    ///     Ratios by joint name: the rotor's rate is the sum of the joints' rates, each times its ratio.
+    /// armature : float, optional
+    ///     Its inertia, kg m²; with 0 it is there to be identified.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     If the name is taken, or a joint does not exist.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi
+    /// >>> ur5 = mozzi.models.ur5().with_rotor("wrist", {"wrist_1_joint": 1.0, "wrist_2_joint": 1.0}, armature=0.1)
+    /// >>> ur5.mass_matrix([0.0] * 6)[3, 4].round(6)
+    /// 0.1
+    #[pyo3(signature = (name, gears, armature=0.0))]
+    fn with_rotor(&self, name: &str, gears: &Bound<'_, PyDict>, armature: f64) -> PyResult<Self> {
+        let gears =
+            gears.iter().map(|(k, x)| Ok((k.extract()?, x.extract()?))).collect::<PyResult<Vec<(String, f64)>>>()?;
+        let gears: Vec<(&str, f64)> = gears.iter().map(|(name, x)| (name.as_str(), *x)).collect();
+        Self::built(self.robot().model.with_rotor(name, armature, &gears))
+    }
+
     /// Return the chain between two frames as a robot of its own.
     ///
     /// Parameters

@@ -124,6 +124,9 @@ impl Model<'_> {
         let (sources, _, places) = self.sources(text, Vec::new())?;
         let mut documents = Vec::new();
         for source in &sources {
+            if source.is_attached {
+                return Err(refused(vec![format!("a part of {} is attached", source.name)]));
+            }
             if source.file().text != source.text {
                 return Err(refused(vec![format!("the XML of {} is not valid", source.name)]));
             }

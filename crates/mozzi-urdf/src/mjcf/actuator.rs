@@ -128,7 +128,7 @@ impl<'a> Model<'a> {
         let mut bounds = |limited: &str, name: &str| {
             let range = item.vector::<2>(name, cx)?;
             let is_limited = match item.word(limited, &["auto", "true", "false"], cx).unwrap_or("auto") {
-                "auto" => self.compiler.autolimits && range[0] < range[1],
+                "auto" => self.compiler.of(&item.element).autolimits && range[0] < range[1],
                 word => word == "true",
             };
             is_limited.then_some(range)

@@ -142,7 +142,7 @@ impl<'a> Model<'a> {
         is_static: bool,
         cx: &mut Context,
     ) -> SpatialInertia {
-        let (inertial, from_geoms) = (contents.inertial.as_ref(), self.compiler.from_geoms);
+        let (inertial, from_geoms) = (contents.inertial.as_ref(), self.compiler.of(element).from_geoms);
         let given = inertial.map(|inertial| self.inertial(inertial, place, cx));
         let is_given = from_geoms == FromGeoms::Never || from_geoms == FromGeoms::Auto && given.is_some();
         let mut sum = SpatialInertia::zero();
@@ -174,12 +174,12 @@ impl<'a> Model<'a> {
             _ if is_given => SpatialInertia::zero(),
             _ => sum,
         };
-        self.bounded(inertia)
+        self.bounded(inertia, element)
     }
 
     /// Scales all bodies to the compiler's settotalmass.
     pub fn scale_to_total_mass(&mut self, cx: &mut Context) {
-        let Some(total) = self.compiler.total_mass else { return };
+        let Some(total) = self.compiler.main.total_mass else { return };
         let mass: f64 = self.tree.links.iter().map(|link| link.inertia.mass).sum();
         if !(mass > 0.0) {
             let message = format!("compiler: settotalmass: the bodies' total mass {mass} cannot be scaled to {total}");

@@ -54,13 +54,25 @@ impl<'a> Classes<'a> {
     {
         let mut classes = Classes { names: BTreeMap::new(), values: vec![BTreeMap::new()], laws: vec![Law::default()] };
         for section in sections {
-            if let Some(name) = section.attribute("class") {
-                classes.names.insert(name.text.to_string(), Class::MAIN);
+            let name = section.attribute("class").map(|name| name.text.to_string());
+            let class = if section.is_attached() { classes.outermost(name.as_deref()) } else { Class::MAIN };
+            if let Some(name) = name {
+                classes.names.insert(name, class);
             }
-            classes.fill(section, Class::MAIN, 0, cx);
+            classes.fill(section, class, 0, cx);
         }
         classes.names.entry("main".to_string()).or_insert(Class::MAIN);
         classes
+    }
+
+    /// The outermost class of a model of which a part is attached: it inherits nothing.
+    fn outermost(&mut self, name: Option<&str>) -> Class {
+        if let Some(&class) = name.and_then(|name| self.names.get(name)) {
+            return class;
+        }
+        self.values.push(BTreeMap::new());
+        self.laws.push(Law::default());
+        Class(self.values.len() - 1)
     }
 
     /// The values of one class, then the classes inside it.

@@ -7,6 +7,7 @@ use crate::text::context::Context;
 use crate::text::element::Element;
 use crate::urdf::vocabulary::shown;
 use mozzi::{SO3, Vec3};
+use std::collections::BTreeMap;
 
 /// The source of a body's inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +18,21 @@ pub(crate) enum FromGeoms {
     Auto,
 }
 
+/// The settings of the model, and those of models of which parts are attached.
+pub(crate) struct Compilers {
+    pub main: Compiler,
+    pub attached: BTreeMap<usize, Compiler>,
+}
+
+impl Compilers {
+    /// Those for an element.
+    pub fn of(&self, element: &Element) -> &Compiler {
+        self.attached.get(&element.page()).unwrap_or(&self.main)
+    }
+}
+
 /// The settings that mozzi uses.
+#[derive(Clone)]
 pub(crate) struct Compiler {
     degrees: bool,
     /// The axis, and whether it turns with the frame.

@@ -91,7 +91,7 @@ impl<'a> Model<'a> {
                     self.gather(&child, &around, contents, cx);
                 }
                 "replicate" => self.replicate(&child, around, contents, cx),
-                name @ ("attach" | "composite" | "flexcomp") => {
+                name @ ("composite" | "flexcomp") => {
                     let message = format!("{}: has <{name}>, which mozzi does not expand", element.subject);
                     let help = "let MuJoCo expand it: load the model there and save it as XML";
                     cx.findings.add(Finding::error("unsupported_element", child.span(), message).help(help));
@@ -126,7 +126,7 @@ impl<'a> Model<'a> {
         let separator = item.value("sep").map_or("", |value| value.text);
         let (digits, mut p) = (given.to_string().len(), Vec3::zero());
         for i in 0..given as usize {
-            let R = self.compiler.euler(euler.map(|angle| i as f64 * angle));
+            let R = self.compiler.of(element).euler(euler.map(|angle| i as f64 * angle));
             let T = around.T * SE3 { R, p };
             p += R.matrix() * offset;
             let suffix = format!("{separator}{i:0digits$}{}", around.suffix).into();

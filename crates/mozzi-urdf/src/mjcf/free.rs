@@ -39,7 +39,7 @@ impl<'a> Model<'a> {
         let aligned = match item.word("align", &["auto", "true", "false"], cx).filter(|_| is_word) {
             Some("true") => true,
             Some("false") => false,
-            _ => self.compiler.align_free && is_word,
+            _ => self.compiler.of(&item.element).align_free && is_word,
         };
         if aligned && contents.bodies.is_empty() {
             let message = "would be aligned with the body's inertia, which moves the body's frame";

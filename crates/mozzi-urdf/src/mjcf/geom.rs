@@ -31,7 +31,7 @@ impl Model<'_> {
     /// The inertia of a geom that is given in a frame T of its body.
     pub fn mass_of(&self, item: &Item, T: SE3, cx: &mut Context) -> Mass {
         let nothing = Mass::Known(SpatialInertia::zero());
-        let [low, high] = self.compiler.groups;
+        let [low, high] = self.compiler.of(&item.element).groups;
         if !(low..=high).contains(&item.number("group", 0.0, cx)) {
             return nothing;
         }
@@ -67,7 +67,7 @@ impl Model<'_> {
                     return Mass::Known(SpatialInertia::new(mass, center, I * (mass / size)).transformed(T * frame));
                 }
                 Ok(body) => {
-                    let (solid, shift) = fitted(body, kind, scale, self.compiler.fit_aabb);
+                    let (solid, shift) = fitted(body, kind, scale, self.compiler.of(&item.element).fit_aabb);
                     (solid, frame * shift)
                 }
             }

@@ -9,19 +9,34 @@ use crate::text::dialect::Dialect;
 use crate::text::source::Source;
 use crate::text::syntax;
 use crate::urdf::vocabulary::shown;
+use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// More files are refused.
-const MOST_FILES: usize = 256;
+pub(crate) const MOST_FILES: usize = 256;
 
-/// An `<include>`: its place, its name's and its attribute's, and the file.
-struct Include {
+/// An `<include>` or `<model>`: its place, its name's and its attribute's, and the file.
+pub(crate) struct Include {
+    what: &'static str,
     place: usize,
     span: Range<usize>,
     file: Option<String>,
+}
+
+impl Include {
+    pub fn of(node: Node, source: &Source, what: &'static str) -> Self {
+        let (start, file) = (node.range().start, node.attribute_node("file"));
+        let name = start + 1..start + 1 + what.len();
+        Include {
+            what,
+            place: source.base + start,
+            span: source.place(file.map_or(name, |file| file.range_value())),
+            file: file.map(|file| file.value().to_string()),
+        }
+    }
 }
 
 /// Reads the files that the first source includes, recursively. Returns the place of each `<include>` and the number of
@@ -84,41 +99,32 @@ fn includes_of(source: &Source) -> Result<Vec<Include>, Finding> {
         return Ok(Vec::new());
     }
     let document = syntax::parse(source, Dialect::Mjcf)?;
-    let is_include = |node: &roxmltree::Node| node.is_element() && node.has_tag_name("include");
-    let includes = document.descendants().filter(is_include).map(|node| {
-        let start = node.range().start;
-        let file = node.attribute_node("file");
-        let name = start + 1..start + 1 + "include".len();
-        Include {
-            place: source.base + start,
-            span: source.place(file.map_or(name, |file| file.range_value())),
-            file: file.map(|file| file.value().to_string()),
-        }
-    });
-    Ok(includes.collect())
+    let is_include = |node: &Node| node.is_element() && node.has_tag_name("include");
+    Ok(document.descendants().filter(is_include).map(|node| Include::of(node, source, "include")).collect())
 }
 
-/// The name and the content of an included file.
-fn open(
+/// The name and the content of a file.
+pub(crate) fn open(
     include: &Include,
     (folder, given): Files,
     beside: Option<&Path>,
     known: &mut BTreeSet<PathBuf>,
 ) -> Result<(String, Vec<u8>), Finding> {
+    let what = include.what;
     let error = |code, message: String| Finding::error(code, include.span.clone(), message);
     let Some(file) = include.file.as_deref().filter(|file| !file.is_empty()) else {
-        return Err(error("missing_attribute", "include: has no attribute `file`".to_string()));
+        return Err(error("missing_attribute", format!("{what}: has no attribute `file`")));
     };
     let shown = shown(file);
     let Some(folder) = folder else {
         return Err(error(
             "include",
-            format!("include: `{shown}` is relative to the model, which was not read from a file"),
+            format!("{what}: `{shown}` is relative to the model, which was not read from a file"),
         )
         .help("read the model from its file"));
     };
     if file.contains("://") || file.starts_with(r"\\") || file.starts_with("//") {
-        return Err(error("include", format!("include: `{shown}` is not on this machine, expected a file")));
+        return Err(error("include", format!("{what}: `{shown}` is not on this machine, expected a file")));
     }
     let is_there = |path: &PathBuf| given.text_of(path).is_some() || path.is_file();
     let path = folder.join(file);
@@ -126,7 +132,7 @@ fn open(
     let path = other.unwrap_or(path);
     let text = given.text_of(&path);
     let fails = |why: String| {
-        error("include", format!("include: `{shown}` cannot be read: {why}"))
+        error("include", format!("{what}: `{shown}` cannot be read: {why}"))
             .help("files are searched in the folder of the main file, then next to the file that includes them")
     };
     let real = match (path.canonicalize(), text) {

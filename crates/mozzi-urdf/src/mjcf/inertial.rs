@@ -7,6 +7,7 @@ use super::vocabulary;
 use crate::report::finding::Finding;
 use crate::report::places::Place;
 use crate::text::context::Context;
+use crate::text::element::Element;
 use mozzi::SpatialInertia;
 use mozzi::linalg::Sym3;
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -57,8 +58,9 @@ impl Model<'_> {
     }
 
     /// The inertia after the compiler's bounds and balancing, if set.
-    pub fn bounded(&self, given: SpatialInertia) -> SpatialInertia {
-        let (bound, mass) = (self.compiler.bound_inertia, given.mass.max(self.compiler.bound_mass));
+    pub fn bounded(&self, given: SpatialInertia, body: &Element) -> SpatialInertia {
+        let compiler = self.compiler.of(body);
+        let (bound, mass) = (compiler.bound_inertia, given.mass.max(compiler.bound_mass));
         let verdict = given.verdict();
         if given.mass < 0.0
             || verdict.principal_moments.iter().any(|&moment| moment < -1e-12 * verdict.principal_moments[2])
@@ -66,7 +68,7 @@ impl Model<'_> {
             return given; // an error is not repaired silently
         }
         let is_low = bound > 0.0 && verdict.principal_moments.iter().any(|&moment| moment < bound);
-        let is_unbalanced = self.compiler.balance && !verdict.is_physical();
+        let is_unbalanced = compiler.balance && !verdict.is_physical();
         if mass == given.mass && !is_low && !is_unbalanced {
             return given;
         }
@@ -84,7 +86,7 @@ impl Model<'_> {
             I = Sym3 { xx, xy, xz, yy: entry(1, 1), yz: entry(1, 2), zz: entry(2, 2) };
         }
         let raised = SpatialInertia::new(mass, given.center_of_mass(), I);
-        if self.compiler.balance && !raised.verdict().is_physical() {
+        if compiler.balance && !raised.verdict().is_physical() {
             let mean = I.trace() / 3.0;
             return SpatialInertia::new(mass, given.center_of_mass(), Sym3::diagonal(mean, mean, mean));
         }

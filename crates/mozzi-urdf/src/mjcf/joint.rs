@@ -45,7 +45,8 @@ impl<'a> Model<'a> {
         let kind = item.word("type", &["hinge", "slide", "ball", "free"], cx).unwrap_or("hinge");
         let (is_slide, is_ball) = (kind == "slide", kind == "ball");
         let screw = if is_ball { None } else { screw(&item, inside.T, is_slide, cx) };
-        let position = |x: f64| if is_slide { x } else { self.compiler.angle(x) };
+        let compiler = self.compiler.of(&item.element).clone();
+        let position = |x: f64| if is_slide { x } else { compiler.angle(x) };
         let reference = if is_ball { 0.0 } else { position(item.number("ref", 0.0, cx)) };
         let rest = if is_ball { 0.0 } else { position(item.number("springref", 0.0, cx)) };
         let limits = self.range(&item, "range", "limited", cx).map(|range| range.map(position));
@@ -86,7 +87,7 @@ impl<'a> Model<'a> {
                 cx.findings.add(item.error("missing_attribute", limited, &message));
                 None
             }
-            "auto" if item.has(range) && !self.compiler.autolimits => {
+            "auto" if item.has(range) && !self.compiler.of(&item.element).autolimits => {
                 let message = format!(
                     "{range}: is used only with {limited}=\"true\", since the compiler's autolimits is `false`"
                 );

@@ -80,6 +80,9 @@ impl<'a> Meshes<'a> {
         let R = item.vector::<4>("refquat", cx).and_then(quaternion).unwrap_or(SO3::identity());
         let file = item.element.attribute("file").map(|value| {
             let path = Path::new(value.text);
+            if item.element.is_attached() {
+                return value.text.to_string(); // with its model's folder
+            }
             let path = if self.strips { path.file_name().map_or(path, Path::new) } else { path };
             Path::new(&self.folder).join(path).to_string_lossy().into_owned()
         });

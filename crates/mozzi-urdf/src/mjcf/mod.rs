@@ -5,7 +5,7 @@
 //! decides, not the file's name.
 //!
 //! # Supported elements
-//! Bodies, frames, `replicate` and sites with every way to write an orientation; free bodies of the world; hinges,
+//! Bodies, frames, `replicate`, `attach` and sites with every way to write an orientation; free bodies of the world; hinges,
 //! slides and balls, several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`,
 //! `springref` and `springdamper`; inertias, given or computed from geoms, also from meshes; default classes;
 //! includes; compiler settings that affect the tree; gravity; keyframes; a linear equality of two joints, as a mimic
@@ -33,7 +33,7 @@
 //!
 //! # Unsupported elements
 //! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
-//!   flexible bodies, `attach` and `composite`, meshes whose inertia is needed and unknown.
+//!   flexible bodies, `composite`, meshes whose inertia is needed and unknown.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
 //!   Simulations may add the forces of actuators and gravity compensation: [`Actuated`].
 //! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without
@@ -45,6 +45,7 @@
 //! Every element and attribute of MuJoCo's schema is in one of these classes; a test checks all of them.
 mod actuated;
 mod actuator;
+mod attach;
 mod attributes;
 mod body;
 mod class;
@@ -67,6 +68,7 @@ mod losses;
 mod mesh;
 mod option;
 mod orientation;
+mod part;
 mod principal;
 mod rotor;
 #[cfg(test)]
@@ -95,13 +97,14 @@ use crate::text::pages::Pages;
 use crate::text::source::Source;
 use crate::text::{bytes, syntax};
 use class::Classes;
-use compiler::Compiler;
+use compiler::{Compiler, Compilers};
 use ignored::Ignored;
 use keyframe::Key;
 use mesh::Meshes;
 use mozzi::Description;
 use option::Options;
 use shapes::Shapes;
+use std::collections::BTreeMap;
 use std::path::Path;
 use tree::Tree;
 
@@ -112,7 +115,7 @@ pub fn is_mjcf(text: &str) -> bool {
 
 /// State shared by the readers of a model.
 pub(crate) struct Model<'a> {
-    pub compiler: Compiler,
+    pub compiler: Compilers,
     pub options: Options,
     pub classes: Classes<'a>,
     pub meshes: Meshes<'a>,
@@ -165,14 +168,16 @@ pub fn included(file: &Path) -> Vec<(String, String)> {
     let mut sources =
         vec![syntax::mended(Source::new(&file.to_string_lossy(), text), Dialect::Mjcf, &mut Findings::default())];
     let mut cx = Context::new(Findings::default(), Dialect::Mjcf);
-    if include::gather(&mut sources, (Some(folder), &XacroArguments::default()), &mut cx).is_none() {
+    let files = (Some(folder), &XacroArguments::default());
+    if include::gather(&mut sources, files, &mut cx).is_none() || attach::expand(&mut sources, files, &mut cx).is_none()
+    {
         return Vec::new();
     }
     let relative = |source: &Source| {
         let path = Path::new(&*source.name).strip_prefix(folder).ok()?;
         Some((path.to_string_lossy().replace('\\', "/"), source.text.to_string()))
     };
-    sources.iter().skip(1).filter_map(relative).collect()
+    sources.iter().skip(1).filter(|source| !source.is_attached).filter_map(relative).collect()
 }
 
 /// Where included files are searched, and texts that are read instead of files.
@@ -186,7 +191,8 @@ struct Read {
 }
 
 fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut Context) -> Option<Read> {
-    let includes = include::gather(sources, files, cx)?;
+    let mut includes = include::gather(sources, files, cx)?;
+    let attached = attach::expand(sources, files, cx)?;
     let mut pages = Vec::new();
     for source in sources.iter() {
         match syntax::parse(source, Dialect::Mjcf) {
@@ -197,11 +203,25 @@ fn read_pages(sources: &mut Vec<Source>, files: Files, wanted: Wanted, cx: &mut 
             }
         }
     }
-    let pages = Pages::new(pages, includes);
-    read_model(&Element::root(&pages, "mujoco")?, files, wanted, cx)
+    includes.extend(attached.places);
+    let pages = Pages::new(pages, includes).followed_by(attached.sections);
+    let (mut compilers, mut keys) = (BTreeMap::new(), BTreeMap::new());
+    for (part, whole) in attached.wholes {
+        let root = Element::root_of(&pages, whole, "mujoco")?;
+        let sections: Vec<Element> = root.elements().filter(|child| child.name() == "compiler").collect();
+        compilers.insert(part, Compiler::read(sections.iter(), cx));
+        keys.extend(root.elements().find(|child| child.name() == "keyframe").map(|keys| (whole, keys)));
+    }
+    read_model(&Element::root(&pages, "mujoco")?, (compilers, keys.into_values().collect()), files, wanted, cx)
 }
 
-fn read_model<'a>(root: &Element<'a>, files: Files<'a>, wanted: Wanted, cx: &mut Context) -> Option<Read> {
+fn read_model<'a>(
+    root: &Element<'a>,
+    (attached, left): (BTreeMap<usize, Compiler>, Vec<Element<'a>>),
+    files: Files<'a>,
+    wanted: Wanted,
+    cx: &mut Context,
+) -> Option<Read> {
     if root.name() != "mujoco" {
         let message =
             format!("the root element is <{}>, expected <mujoco>", crate::urdf::vocabulary::shown(root.written_name()));
@@ -218,7 +238,7 @@ fn read_model<'a>(root: &Element<'a>, files: Files<'a>, wanted: Wanted, cx: &mut
     let (compiler, classes) = (Compiler::read(of("compiler"), cx), Classes::read(of("default"), cx));
     let mut model = Model {
         meshes: Meshes::new(&sections, &classes, compiler.strips, files, cx),
-        compiler,
+        compiler: Compilers { main: compiler, attached },
         options: Options::default(),
         classes,
         ignored: Ignored::default(),
@@ -237,6 +257,9 @@ fn read_model<'a>(root: &Element<'a>, files: Files<'a>, wanted: Wanted, cx: &mut
     model.leave_the_world();
     let keys = Key::read(of("keyframe"), cx);
     model.ignored.sections(&sections);
+    for section in left {
+        model.ignored.list("keyframe", section.span(), "mujoco", "keys of an attached model are not read");
+    }
     model.ignored.tell(cx);
     cx.report_repeated();
     if cx.findings.is_full() {

@@ -1,7 +1,7 @@
 //! Position and orientation, in the five ways to write one.
 
 use super::attributes::Item;
-use super::compiler::Compiler;
+use super::compiler::{Compiler, Compilers};
 use crate::report::finding::Finding;
 use crate::text::context::Context;
 use crate::urdf::vocabulary::list;
@@ -11,9 +11,9 @@ use mozzi::{SE3, SO3, Vec3};
 pub(crate) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// Configuration of an element's frame relative to its parent's; invalid parts are reported and omitted.
-pub(crate) fn pose(item: &Item, compiler: &Compiler, cx: &mut Context) -> SE3 {
+pub(crate) fn pose(item: &Item, compilers: &Compilers, cx: &mut Context) -> SE3 {
     let p = item.vector::<3>("pos", cx).unwrap_or([0.0; 3]);
-    SE3 { R: orientation(item, compiler, cx), p: Vec3(p) }
+    SE3 { R: orientation(item, compilers.of(&item.element), cx), p: Vec3(p) }
 }
 
 /// The orientation only. The element's own attributes take precedence over its class.

@@ -68,7 +68,7 @@ impl<'a> Model<'a> {
 
     fn is_limited(&self, item: &Item, cx: &mut Context) -> bool {
         let limited = item.word("limited", &["auto", "true", "false"], cx).unwrap_or("auto");
-        limited == "true" || limited == "auto" && item.has("range") && self.compiler.autolimits
+        limited == "true" || limited == "auto" && item.has("range") && self.compiler.of(&item.element).autolimits
     }
 
     /// Reads the rotors and dampers of actuators; their torques are arguments of the functions.

@@ -17,6 +17,7 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
         "mujoco/default" => &vocabulary::DEFAULT,
         "mujoco/body" => &vocabulary::BODY,
         "mujoco/body/inertial" => &vocabulary::INERTIAL,
+        "mujoco/body/attach" => &vocabulary::ATTACH,
         "mujoco/body/freejoint" => &vocabulary::FREE_JOINT,
         "mujoco/body/joint" | "mujoco/default/joint" => &vocabulary::JOINT,
         "mujoco/body/geom" | "mujoco/default/geom" => &vocabulary::GEOM,
@@ -32,7 +33,7 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
 }
 
 /// Elements that are reported with all their contents: the path, an example, and the code.
-const TOLD: [(&str, &str, &str); 21] = [
+const TOLD: [(&str, &str, &str); 20] = [
     ("mujoco/compiler/lengthrange", "<compiler><§/></compiler>", "ignored_attribute"),
     ("mujoco/size", "<§/>", "ignored_element"),
     ("mujoco/statistic", "<§/>", "ignored_element"),
@@ -41,7 +42,6 @@ const TOLD: [(&str, &str, &str); 21] = [
     ("mujoco/extension", "<§/>", "ignored_element"),
     ("mujoco/asset", "<§/>", "ignored_element"),
     ("mujoco/body/geom/plugin", "<worldbody><body><geom size='1'><§/></geom></body></worldbody>", "ignored_element"),
-    ("mujoco/body/attach", "<worldbody><body><§/></body></worldbody>", "unsupported_element"),
     ("mujoco/body/camera", "<worldbody><body><§/></body></worldbody>", "ignored_element"),
     ("mujoco/body/light", "<worldbody><body><§/></body></worldbody>", "ignored_element"),
     ("mujoco/body/plugin", "<worldbody><body><§/></body></worldbody>", "ignored_force"),

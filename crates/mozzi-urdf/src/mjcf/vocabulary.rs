@@ -25,6 +25,7 @@ pub(crate) const MUJOCO: Vocabulary = Vocabulary {
     ],
     ..NOTHING
 };
+pub(crate) const ATTACH: Vocabulary = Vocabulary { attributes: &["model", "body", "prefix"], ..NOTHING };
 pub(crate) const COMPILER: Vocabulary = Vocabulary {
     attributes: &[
         "angle",

@@ -49,6 +49,16 @@ impl<'a> Element<'a> {
         Element { subject: subject.into(), ..self.clone() }
     }
 
+    /// The number of its text.
+    pub fn page(&self) -> usize {
+        self.page
+    }
+
+    /// True if it is in a part of another model.
+    pub fn is_attached(&self) -> bool {
+        self.pages.source(self.page).is_attached
+    }
+
     /// The name as written, with its prefix.
     pub fn written_name(&self) -> &'a str {
         self.raw(&self.span())

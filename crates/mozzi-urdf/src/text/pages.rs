@@ -11,17 +11,24 @@ pub(crate) struct Pages<'a> {
     pages: Vec<(&'a Source, Document<'a>)>,
     /// The page that replaces the element at each place.
     includes: BTreeMap<usize, usize>,
+    /// The pages whose elements follow those of the first.
+    appended: Vec<usize>,
 }
 
 impl<'a> Pages<'a> {
     /// A text that includes no other.
     pub fn single(source: &'a Source, document: Document<'a>) -> Self {
-        Pages { pages: vec![(source, document)], includes: BTreeMap::new() }
+        Pages { pages: vec![(source, document)], includes: BTreeMap::new(), appended: Vec::new() }
     }
 
     /// The first text and those that are included, with the place of each `<include>` and its page.
     pub fn new(pages: Vec<(&'a Source, Document<'a>)>, includes: BTreeMap<usize, usize>) -> Self {
-        Pages { pages, includes }
+        Pages { pages, includes, appended: Vec::new() }
+    }
+
+    /// With pages whose elements follow those of the first.
+    pub fn followed_by(self, appended: Vec<usize>) -> Self {
+        Pages { appended, ..self }
     }
 
     /// The root of one of the texts.
@@ -42,7 +49,10 @@ impl<'a> Pages<'a> {
 
     /// The children of a node, and their pages; included content replaces its `<include>`.
     pub fn children(&'a self, node: Node<'a, 'a>, page: usize) -> Children<'a> {
-        Children { pages: self, open: vec![(node.children(), page)] }
+        let is_first = page == 0 && node.parent_element().is_none();
+        let after = self.appended.iter().rev().filter(|_| is_first);
+        let after = after.map(|&k| (self.pages[k].1.root_element().children(), k));
+        Children { pages: self, open: after.chain([(node.children(), page)]).collect() }
     }
 }
 

@@ -17,6 +17,8 @@ pub(crate) struct Source {
     inserted: (usize, usize),
     /// Whether diagnostics may show lines of it.
     pub is_shown: bool,
+    /// A part of the file, with names changed.
+    pub is_attached: bool,
     /// The expansion that produced the text, if it is not a file's: its places are in other files.
     pub expansion: Option<Arc<mozzi_xacro::Expansion>>,
 }
@@ -31,7 +33,7 @@ pub(crate) struct Position {
 impl Source {
     pub fn new(name: &str, text: &str) -> Self {
         let (name, text, original, inserted) = (name.into(), text.into(), None, (0, 0));
-        Source { name, text, base: 0, original, inserted, is_shown: true, expansion: None }
+        Source { name, text, base: 0, original, inserted, is_shown: true, is_attached: false, expansion: None }
     }
 
     /// Replaces the parsed text by one in which all places are the same.
@@ -75,6 +77,11 @@ impl Source {
     /// For a file that a model names: it may be any file of this machine, so diagnostics must not show its lines.
     pub fn hidden(self) -> Self {
         Source { is_shown: false, ..self }
+    }
+
+    /// For a part of a file, with names changed.
+    pub fn attached(self) -> Self {
+        Source { is_attached: true, ..self }
     }
 
     /// Converts a place in this text to its place among all texts.

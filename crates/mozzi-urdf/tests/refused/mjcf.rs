@@ -41,9 +41,9 @@ fn what_has_no_place_is_refused_by_name() {
             "body `b`: replicate: count: is 2.5, expected a whole number, and at most 10000 copies in all",
         ),
         (
-            body!("<§attach model='m' prefix='p'/>"),
+            body!("<§composite type='cable'/>"),
             "unsupported_element",
-            "body `b`: has <attach>, which mozzi does not expand",
+            "body `b`: has <composite>, which mozzi does not expand",
         ),
         (
             body!("<joint/><geom name='hull' type='mesh' mesh='§hull'/>"),

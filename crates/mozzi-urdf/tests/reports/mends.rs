@@ -151,7 +151,7 @@ const MENDS: &[(&str, &[(&str, &str)])] = &[
     ("mjcf::unknown_word", &[("\"hing\"", "\"hinge\"")]),
     ("mjcf::unsupported_attribute", &[("name=\"wedge\" vertex", "name=\"wedge\" inertia=\"shell\" vertex"),
         (" shellinertia=\"true\"", "")]),
-    ("mjcf::unsupported_element", &[("<attach model=\"arm\" body=\"hand\" prefix=\"left_\"/>",
+    ("mjcf::unsupported_element", &[("<composite type=\"cable\" count=\"9 1 1\"/>",
         "<body name=\"left_hand\"><geom size=\"0.04\"/></body>")]),
     ("mjcf::unsupported_equality", &[("<tendon tendon1=\"flexor\"/>",
         "<joint joint1=\"elbow\" joint2=\"shoulder\" polycoef=\"0 -2\"/>")]),

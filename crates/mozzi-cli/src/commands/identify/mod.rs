@@ -1,6 +1,5 @@
 //! `mozzi identify`: the robot's parameters from logs of its motion.
 
-mod coupled;
 mod join;
 mod joint_states;
 mod log_file;
@@ -19,7 +18,6 @@ use crate::robot::FileArguments;
 use crate::tables::samples::Row;
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
-use coupled::with_rotors;
 use log_file::{Given, read_log, read_table};
 use mozzi::Model;
 use mozzi_identify::judgement::judge;
@@ -160,7 +158,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
-    let coupled = with_rotors(&whole, &arguments.coupled)?;
+    let coupled = edits::coupled(&whole, &arguments.coupled)?;
     let lock = arguments.lock_list(&whole)?;
     let locks = edits::locks(&lock, &whole)?;
     let model = if locks.is_empty() { coupled } else { coupled.with_locked_joints(&locks)? };

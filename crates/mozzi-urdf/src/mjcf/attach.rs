@@ -1,0 +1,185 @@
+//! `<attach>`: a body of another model, or the contents of its world, with a prefix before all names. The other model is
+//! a file that `<model>` of `<asset>` names; its own `<compiler>` and default classes hold for its parts.
+
+use super::Files;
+use super::include::{self, Include, MOST_FILES};
+use super::part::{Part, Wanted};
+use super::vocabulary;
+use crate::report::finding::{Finding, Findings};
+use crate::text::bytes::{self, MOST_BYTES};
+use crate::text::context::Context;
+use crate::text::dialect::Dialect;
+use crate::text::source::Source;
+use crate::text::syntax;
+use crate::urdf::vocabulary::{list, shown};
+use roxmltree::Node;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::path::Path;
+
+/// The texts that were added for all `<attach>`.
+#[derive(Default)]
+pub(crate) struct Attached {
+    /// The place of each `<attach>`, and the number of the source that replaces it.
+    pub places: BTreeMap<usize, usize>,
+    /// The sources whose sections follow those of the model: assets, defaults, equalities, tendons and actuators.
+    pub sections: Vec<usize>,
+    /// The sources of parts, each with the source of the whole model, whose `<compiler>` holds.
+    pub wholes: BTreeMap<usize, usize>,
+}
+
+/// An `<attach>` as written.
+struct Attach {
+    place: usize,
+    span: Range<usize>,
+    model: String,
+    body: Option<String>,
+    prefix: String,
+}
+
+/// Reads the models of which parts are attached, and adds the parts to the sources; None, with a diagnostic, if that
+/// fails.
+pub(crate) fn expand(sources: &mut Vec<Source>, files: Files, cx: &mut Context) -> Option<Attached> {
+    let mut attached = Attached::default();
+    if !sources.iter().any(|source| source.text.contains("<attach")) {
+        return Some(attached);
+    }
+    let (mut models, mut places) = (BTreeMap::new(), Vec::new());
+    for source in &*sources {
+        match syntax::parse(source, Dialect::Mjcf) {
+            Ok(document) => document.descendants().for_each(|node| note(node, source, (&mut models, &mut places), cx)),
+            Err(finding) => {
+                cx.findings.add(finding);
+                return None;
+            }
+        }
+    }
+    let mut read: BTreeMap<String, usize> = BTreeMap::new();
+    for attach in places {
+        let Some(model) = models.get(&attach.model) else {
+            let message = format!("attach: model: there is no model `{}` in <asset>", shown(&attach.model));
+            let help = crate::report::spelling::did_you_mean(&attach.model, models.keys().map(String::as_str));
+            cx.findings.add(Finding::error("unknown_word", attach.span, message).maybe_help(help));
+            continue;
+        };
+        let whole = match read.get(&attach.model) {
+            Some(&whole) => whole,
+            None => {
+                match open(model, files, after(sources), cx) {
+                    Ok(source) => sources.push(source),
+                    Err(finding) => {
+                        cx.findings.add(finding);
+                        continue;
+                    }
+                }
+                read.insert(attach.model.clone(), sources.len() - 1);
+                sources.len() - 1
+            }
+        };
+        if let Err(finding) = add(&attach, whole, sources, files, &mut attached) {
+            cx.findings.add(finding);
+        }
+    }
+    (!cx.findings.has_errors()).then_some(attached)
+}
+
+/// The place of the next source.
+fn after(sources: &[Source]) -> usize {
+    sources.last().map_or(0, |last| last.base + last.text.len() + 1)
+}
+
+/// Notes an element if it is a model of `<asset>` or an `<attach>`.
+fn note(
+    node: Node,
+    source: &Source,
+    (models, places): (&mut BTreeMap<String, Include>, &mut Vec<Attach>),
+    cx: &mut Context,
+) {
+    let is_in = |name| node.parent_element().is_some_and(|parent| parent.has_tag_name(name));
+    let text = |name: &str| node.attribute(name).unwrap_or_default().to_string();
+    if node.has_tag_name("model") && is_in("asset") {
+        let stem = || Path::new(&text("file")).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let name = node.attribute("name").map(str::to_string).or_else(stem).unwrap_or_default();
+        models.insert(name, Include::of(node, source, "model"));
+    } else if node.has_tag_name("attach") {
+        let start = node.range().start;
+        for attribute in node.attributes().filter(|one| !vocabulary::ATTACH.attributes.contains(&one.name())) {
+            let known = list(vocabulary::ATTACH.attributes);
+            let message = format!("attach: has an attribute `{}`, expected one of {known}", shown(attribute.name()));
+            cx.findings.error("misspelled_attribute", source.place(attribute.range_qname()), message);
+        }
+        places.push(Attach {
+            place: source.base + start,
+            span: source.place(start + 1..start + 1 + "attach".len()),
+            model: text("model"),
+            body: node.attribute("body").filter(|body| !body.is_empty() && *body != "world").map(str::to_string),
+            prefix: text("prefix"),
+        });
+    }
+}
+
+/// The text of a model.
+fn open(model: &Include, files: Files, base: usize, cx: &mut Context) -> Result<Source, Finding> {
+    let (name, content) = include::open(model, files, None, &mut BTreeSet::new())?;
+    let mut findings = Findings::default();
+    let text = Source::new(&name, bytes::read(&content, &mut findings)).at(base);
+    let text = if Dialect::of(&text.text) == Dialect::Mjcf { text } else { text.hidden() };
+    let text = syntax::mended(text, Dialect::Mjcf, &mut cx.findings);
+    match findings.moved(base).next() {
+        Some(finding) => Err(finding),
+        None => Ok(text),
+    }
+}
+
+/// Adds what replaces the `<attach>`, and the sections that belong to it.
+fn add(
+    attach: &Attach,
+    whole: usize,
+    sources: &mut Vec<Source>,
+    (folder, _): Files,
+    attached: &mut Attached,
+) -> Result<(), Finding> {
+    let source = sources[whole].clone();
+    let document = syntax::parse(&source, Dialect::Mjcf)?;
+    let fails = |code, message: String| Finding::error(code, attach.span.clone(), message);
+    let root = document.root_element();
+    if !root.has_tag_name("mujoco") {
+        let found = shown(root.tag_name().name());
+        return Err(fails(
+            "wrong_root",
+            format!("attach: the root element of its model is <{found}>, expected <mujoco>"),
+        ));
+    }
+    for name in ["include", "attach"] {
+        if root.descendants().any(|node| node.has_tag_name(name)) {
+            let message = format!("attach: its model has <{name}>, which mozzi does not expand there");
+            let help = "let MuJoCo expand it: load the model there and save it as XML";
+            return Err(fails("unsupported_element", message).help(help));
+        }
+    }
+    let file = Path::new(&*source.name);
+    let beside = folder.and_then(|folder| file.parent()?.strip_prefix(folder).ok());
+    let folder = beside.or_else(|| file.parent()).unwrap_or(Path::new("")).to_path_buf();
+    let wanted = Wanted { body: attach.body.as_deref(), prefix: &attach.prefix, folder };
+    let part =
+        Part::of(&document, &source.text, &wanted).map_err(|why| fails("unknown_word", format!("attach: {why}")))?;
+    for (text, is_section) in [(part.bodies, false), (part.sections, true)] {
+        let total: usize = sources.iter().map(|source| source.text.len()).sum();
+        if sources.len() >= MOST_FILES || total + text.len() > MOST_BYTES {
+            let message =
+                format!("attach: more than {MOST_FILES} files or {MOST_BYTES} bytes in total, expected at most these");
+            return Err(fails("too_large", message));
+        }
+        let k = sources.len();
+        let mut text = Source::new(&source.name, &text).at(after(sources)).attached();
+        text.is_shown = source.is_shown;
+        sources.push(text);
+        attached.wholes.insert(k, whole);
+        if is_section {
+            attached.sections.push(k);
+        } else {
+            attached.places.insert(attach.place, k);
+        }
+    }
+    Ok(())
+}
