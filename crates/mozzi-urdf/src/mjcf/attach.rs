@@ -1,5 +1,5 @@
-//! `<attach>`: a body of another model, or the contents of its world, with a prefix before all names. The other model is
-//! a file that `<model>` of `<asset>` names; its own `<compiler>` and default classes hold for its parts.
+//! `<attach>`: a body of another model, or the contents of its world, with a prefix before all names. The other model
+//! is a file that `<model>` of `<asset>` names; its own `<compiler>` and default classes hold for its parts.
 
 use super::Files;
 use super::include::{self, Include, MOST_FILES};

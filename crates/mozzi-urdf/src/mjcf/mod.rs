@@ -5,12 +5,12 @@
 //! decides, not the file's name.
 //!
 //! # Supported elements
-//! Bodies, frames, `replicate`, `attach` and sites with every way to write an orientation; free bodies of the world; hinges,
-//! slides and balls, several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`, `stiffness`,
-//! `springref` and `springdamper`; inertias, given or computed from geoms, also from meshes; default classes;
-//! includes; compiler settings that affect the tree; gravity; keyframes; a linear equality of two joints, as a mimic
-//! joint; other equalities of joints, `connect` and `weld`, as constraints; the armature of actuators, and of fixed
-//! tendons, as rotors that several joints turn.
+//! Bodies, frames, `replicate`, `attach` and sites with every way to write an orientation; free bodies of the world;
+//! hinges, slides and balls, several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`,
+//! `stiffness`, `springref` and `springdamper`; inertias, given or computed from geoms, also from meshes; default
+//! classes; includes; compiler settings that affect the tree; gravity; keyframes; a linear equality of two joints, as a
+//! mimic joint; other equalities of joints, `connect` and `weld`, as constraints; the armature of actuators, and of
+//! fixed tendons, as rotors that several joints turn.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
 //!   MuJoCo's `qpos`, with `ref`. Between two joints of one body there is a massless link `body:joint`.

@@ -33,12 +33,12 @@ const NAMES: [&str; 24] = [
     "slidersite",
     "texture",
 ];
-/// The same, of tendons.
+/// Attributes whose value is the name of a tendon.
 const TENDONS: [&str; 3] = ["tendon", "tendon1", "tendon2"];
 /// The sections that are attached as far as they refer to the part.
 const REFERRING: [&str; 3] = ["tendon", "equality", "actuator"];
 
-/// What is attached.
+/// The part to attach.
 pub(crate) struct Wanted<'w> {
     /// None for the contents of the world.
     pub body: Option<&'w str>,
@@ -49,13 +49,13 @@ pub(crate) struct Wanted<'w> {
 
 /// Two texts, each in a root element.
 pub(crate) struct Part {
-    /// What replaces the `<attach>`.
+    /// The text that replaces the `<attach>`.
     pub bodies: String,
     pub sections: String,
 }
 
 impl Part {
-    /// An error says why there is none.
+    /// An error states why there is none.
     pub fn of(document: &Document, text: &str, wanted: &Wanted) -> Result<Self, String> {
         let root = document.root_element();
         let sections = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));

@@ -51,12 +51,12 @@ impl Model<f64> {
         robot.build()
     }
 
-    /// A copy of the robot with a further rotor of the given inertia, kg m² or kg, which these joints turn together: its
-    /// rate is Σ ratio θ̇, as in coupled wrists. With armature 0 it is there to be identified.
+    /// A copy of the robot with a further rotor of the given inertia, kg m² or kg, which these joints turn together:
+    /// its rate is Σ ratio θ̇, as in coupled wrists. With armature 0 it is there to be identified.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a name that is taken, a joint that does not exist or is no joint of one axis, numbers that
-    /// are not finite.
+    /// [`Error::Invalid`] for a name that is taken, a joint that does not exist or is no joint of one axis, numbers
+    /// that are not finite.
     pub fn with_rotor(&self, name: impl Into<String>, armature: f64, gears: &[(&str, f64)]) -> Result<Model, Error> {
         let mut robot = self.description().clone();
         let gears = gears.iter().map(|&(joint, ratio)| Gear { joint: joint.to_string(), ratio }).collect();
