@@ -3,6 +3,7 @@
 import _thread
 import pickle
 import re
+import signal
 import threading
 
 import mozzi
@@ -149,12 +150,15 @@ def test_a_blow_up_is_named(ur5):
 
 @pytest.mark.parametrize("torque", [None, "gravity_compensation", lambda t, theta, dtheta: -dtheta])
 def test_interrupted(ur5, torque):
+    # what a shell starts in the background ignores the signal
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     starts = np.zeros((40, 6))
     timer = threading.Timer(0.3, _thread.interrupt_main)  # itself in need of Python's lock
     with pytest.raises(KeyboardInterrupt):
         timer.start()
         ur5.simulate(starts, np.zeros(6), 1e3, 10**7, torque=torque, record_every=10**7)
     timer.join()
+    signal.signal(signal.SIGINT, before)
 
 
 def test_methods_agree():
