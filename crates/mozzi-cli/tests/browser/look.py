@@ -45,7 +45,7 @@ PAINTED = """() => {
 
 
 def look(browser, job):
-    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]})
+    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]}, device_scale_factor=0.5)
     page.set_default_timeout(300_000)  # a busy machine draws slowly
     found = {"errors": [], "requests": [], "states": []}
     page.on("console", lambda said: said.type == "error" and found["errors"].append(said.text))

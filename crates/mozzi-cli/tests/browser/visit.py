@@ -58,7 +58,7 @@ def contrast(page):
 
 
 def visit(browser, job, do):
-    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]})
+    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]}, device_scale_factor=0.5)
     page.set_default_timeout(300_000)  # a busy machine draws slowly
     page.add_init_script(HINTS)
     found = {"errors": [], "requests": []}
