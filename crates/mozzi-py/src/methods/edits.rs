@@ -151,8 +151,9 @@ impl PyModel {
     /// Examples
     /// --------
     /// >>> import mozzi
-    /// >>> ur5 = mozzi.models.ur5().with_rotor("wrist", {"wrist_1_joint": 1.0, "wrist_2_joint": 1.0}, armature=0.1)
-    /// >>> ur5.mass_matrix([0.0] * 6)[3, 4].round(6)
+    /// >>> ur5, theta = mozzi.models.ur5(), [0.0] * 6
+    /// >>> wrist = ur5.with_rotor("wrist", {"wrist_1_joint": 1.0, "wrist_2_joint": 1.0}, armature=0.1)
+    /// >>> round(float((wrist.mass_matrix(theta) - ur5.mass_matrix(theta))[3, 4]), 6)
     /// 0.1
     #[pyo3(signature = (name, gears, armature=0.0))]
     fn with_rotor(&self, name: &str, gears: &Bound<'_, PyDict>, armature: f64) -> PyResult<Self> {
