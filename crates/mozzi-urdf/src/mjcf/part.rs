@@ -1,6 +1,7 @@
 //! A part of a model as text: the body that is attached and the sections that refer to it, with the prefix before all
 //! names. The model's outermost default class is given by name wherever it would have held; lines keep their numbers.
 
+use crate::urdf::write;
 use roxmltree::{Document, Node};
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -266,7 +267,7 @@ impl Writer<'_> {
     }
 }
 
-/// A value of an attribute.
+/// As a part of an attribute's value, in either kind of quotes.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;").replace('\'', "&apos;")
+    write::escaped(text).replace('\'', "&apos;")
 }
