@@ -69,6 +69,16 @@ fn an_equality_with_what_is_not_attached_is_left_out() {
 }
 
 #[test]
+fn a_frame_is_attached_with_its_pose_and_its_contents() {
+    let framed = ARM
+        .replace("<body name='b'>", "<frame name='f' pos='0 0 3'><body name='b'>")
+        .replace("</body></body>", "</body></frame></body>");
+    let robot = load(scene("frame", "<attach model='arm' frame='f' prefix='x_'/>", &framed)).unwrap();
+    let [joint] = robot.description.joints.as_slice() else { panic!("one joint") };
+    assert_eq!((&*joint.name, joint.damping, joint.origin.p.0), ("x_k", 2.0, [0.0, 0.0, 3.0]));
+}
+
+#[test]
 fn what_cannot_be_attached_is_named() {
     let body = "<attach model='arm' body='a' prefix='x_'/>";
     let cases = [
@@ -79,6 +89,18 @@ fn what_cannot_be_attached_is_named() {
             "5:2: error: attach: model: there is no model `arn` in <asset>",
         ),
         ("body", "<attach model='arm' body='c'/>", ARM, "5:2: error: attach: body: its model has no body `c`"),
+        (
+            "frame",
+            "<attach model='arm' frame='world'/>",
+            ARM,
+            "5:2: error: attach: frame: its model has no frame `world`",
+        ),
+        (
+            "both",
+            "<attach model='arm' body='a' frame='f'/>",
+            ARM,
+            "attach: has a `body` and a `frame`, expected at most one",
+        ),
         (
             "word",
             "<attach model='arm' prefx='x_'/>",

@@ -1,5 +1,5 @@
-//! `<attach>`: a body of another model, or the contents of its world, with a prefix before all names. The other model
-//! is a file that `<model>` of `<asset>` names; its own `<compiler>` and default classes hold for its parts.
+//! `<attach>`: a body or frame of another model, or the contents of its world, with a prefix before all names. The
+//! other model is a file that `<model>` of `<asset>` names; its own `<compiler>` and classes hold for its parts.
 
 use super::Files;
 use super::include::{self, Include, MOST_FILES};
@@ -33,7 +33,8 @@ struct Attach {
     place: usize,
     span: Range<usize>,
     model: String,
-    body: Option<String>,
+    /// `body` or `frame`, and its name.
+    root: Option<(&'static str, String)>,
     prefix: String,
 }
 
@@ -108,11 +109,18 @@ fn note(
             let message = format!("attach: has an attribute `{}`, expected one of {known}", shown(attribute.name()));
             cx.findings.error("misspelled_attribute", source.place(attribute.range_qname()), message);
         }
+        let named = ["body", "frame"].map(|tag| node.attribute(tag).map(|name| (tag, name.to_string())));
+        if let [Some(_), Some(_)] = named {
+            let span = source.place(node.range());
+            let message = "attach: has a `body` and a `frame`, expected at most one of them";
+            cx.findings.error("contradictory_attribute", span, message);
+        }
+        let is_world = |(tag, name): &(&str, String)| *tag == "body" && (name.is_empty() || name == "world");
         places.push(Attach {
             place: source.base + start,
             span: source.place(start + 1..start + 1 + "attach".len()),
             model: text("model"),
-            body: node.attribute("body").filter(|body| !body.is_empty() && *body != "world").map(str::to_string),
+            root: named.into_iter().flatten().find(|named| !is_world(named)),
             prefix: text("prefix"),
         });
     }
@@ -160,7 +168,8 @@ fn add(
     let file = Path::new(&*source.name);
     let beside = folder.and_then(|folder| file.parent()?.strip_prefix(folder).ok());
     let folder = beside.or_else(|| file.parent()).unwrap_or(Path::new("")).to_path_buf();
-    let wanted = Wanted { body: attach.body.as_deref(), prefix: &attach.prefix, folder };
+    let wanted =
+        Wanted { root: attach.root.as_ref().map(|(tag, name)| (*tag, &**name)), prefix: &attach.prefix, folder };
     let part =
         Part::of(&document, &source.text, &wanted).map_err(|why| fails("unknown_word", format!("attach: {why}")))?;
     for (text, is_section) in [(part.bodies, false), (part.sections, true)] {

@@ -1,6 +1,8 @@
-//! A part of a model as text: the body that is attached and the sections that refer to it, with the prefix before all
-//! names. The model's outermost default class is given by name wherever it would have held; lines keep their numbers.
+//! A part of a model as text: the body or frame that is attached and the sections that refer to it, with the prefix
+//! before all names. The model's outermost default class is given by name wherever it would have held; lines keep their
+//! numbers.
 
+use crate::urdf::vocabulary::shown;
 use crate::urdf::write;
 use roxmltree::{Document, Node};
 use std::collections::BTreeSet;
@@ -41,8 +43,8 @@ const REFERRING: [&str; 3] = ["tendon", "equality", "actuator"];
 
 /// The part to attach.
 pub(crate) struct Wanted<'w> {
-    /// None for the contents of the world.
-    pub body: Option<&'w str>,
+    /// `body` or `frame` and its name; None for the contents of the world.
+    pub root: Option<(&'static str, &'w str)>,
     pub prefix: &'w str,
     /// The folder of the model, relative to that of the model to which it is attached.
     pub folder: PathBuf,
@@ -61,12 +63,12 @@ impl Part {
         let root = document.root_element();
         let sections = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
         let mut roots = Vec::new(); // the elements that replace the <attach>
-        match wanted.body {
+        match wanted.root {
             None => roots.extend(sections("worldbody").flat_map(|world| world.children()).filter(Node::is_element)),
-            Some(name) => {
-                let is_it = |node: &Node| node.has_tag_name("body") && node.attribute("name") == Some(name);
+            Some((tag, name)) => {
+                let is_it = |node: &Node| node.has_tag_name(tag) && node.attribute("name") == Some(name);
                 let found = sections("worldbody").flat_map(|world| world.descendants()).find(is_it);
-                roots.push(found.ok_or_else(|| format!("body: its model has no body `{name}`"))?);
+                roots.push(found.ok_or_else(|| format!("{tag}: its model has no {tag} `{}`", shown(name)))?);
             }
         }
         let main = sections("default").find_map(|section| section.attribute("class")).unwrap_or("main");
@@ -91,7 +93,7 @@ impl Part {
             }
             bodies.push(node.range());
         }
-        let inside = Inside::of(&bodies, root, wanted.body.is_none());
+        let inside = Inside::of(&bodies, root, wanted.root.is_none());
         let mut others = Vec::new();
         for section in root.children().filter(Node::is_element) {
             match section.tag_name().name() {

@@ -25,7 +25,7 @@ pub(crate) const MUJOCO: Vocabulary = Vocabulary {
     ],
     ..NOTHING
 };
-pub(crate) const ATTACH: Vocabulary = Vocabulary { attributes: &["model", "body", "prefix"], ..NOTHING };
+pub(crate) const ATTACH: Vocabulary = Vocabulary { attributes: &["model", "body", "frame", "prefix"], ..NOTHING };
 pub(crate) const COMPILER: Vocabulary = Vocabulary {
     attributes: &[
         "angle",

@@ -17,7 +17,8 @@ const CODES: [Entry; 74] = [
         "a joint with bounds is of type `revolute`"),
     ("contradictory_attribute",
         "An inertia has an entry on both sides of its diagonal, such as `ixy` and `iyx`, with different values. The \
-         matrix is symmetric, so one of them is wrong.",
+         matrix is symmetric, so one of them is wrong. Or two attributes exclude each other, such as `body` and \
+         `frame` of `<attach>`.",
         "keep the right one, under the name that URDF defines: `ixy`, `ixz`, `iyz`"),
     ("contradictory_limits",
         "A mimic joint and its source joint have limits that no position satisfies together. mozzi computes the \
