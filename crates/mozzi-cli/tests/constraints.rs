@@ -29,7 +29,7 @@ fn json_keeps_constraints_and_motors() {
     assert_eq!(converted(&folder, &[&copy]).1, robot);
     let wrong = robot.to_string().replace("\"weld\"", "\"wled\"");
     let (code, why) = complaint(&["info", &file(&folder, "wrong.json", &wrong)]);
-    assert!(code != 0 && why.contains("constraints[1].kind is \"wled\", expected one of point, weld"), "{why}");
+    assert!(code != 0 && why.contains("constraints[1].kind is \"wled\", expected one of `point`, `weld`"), "{why}");
     let (_, why) = complaint(&["convert", &copy, &file(&folder, "out.urdf", "")]);
     assert!(why.contains("`cam`"), "{why}");
 }

@@ -140,9 +140,9 @@ def test_constraints_are_data(tree, four_bar, tmp_path):
     arrays[0]["a"]["xyz"] = np.array([0.8, 0, 0])
     assert tree.with_constraints(arrays) == four_bar
     for change, words in [
-        ({"kind": "pin"}, r"constraints\[0\].kind is `pin`"),
+        ({"kind": "pin"}, r"constraints\[0\].kind is \"pin\""),
         ({"a": {"frame": "copler"}}, "there is no link or frame `copler`"),
-        ({"length": 1.0}, "`length` is not known"),
+        ({"length": 1.0}, "`length` is not an entry"),
         ({"a": {"frame": "rocker"}}, "fixed to each other"),
     ]:
         with pytest.raises(ValueError, match=words):

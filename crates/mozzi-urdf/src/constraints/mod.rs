@@ -32,8 +32,8 @@ mod entry;
 mod file;
 mod yaml;
 
-pub use entry::{Entry, constraint, motors};
-pub use file::{ConstraintsError, Misplaced};
+pub(crate) use entry::constraint;
+pub use file::ConstraintsError;
 
 use mozzi::Description;
 use mozzi::model::description::{Anchor, Constraint, ConstraintKind};
@@ -53,7 +53,7 @@ pub fn read(path: impl AsRef<Path>, robot: Description) -> Result<Description, C
 /// The robot with the constraints of a text added, and its motors. Errors use the name as the file's.
 ///
 /// # Errors
-/// [`ConstraintsError::Refused`]: all unknown and missing keys, else the first other error.
+/// [`ConstraintsError::Refused`]: the first error of the text, or all of the robot with its constraints.
 pub fn parse(file_name: &str, text: &str, robot: Description) -> Result<Description, ConstraintsError> {
     file::add(file_name, text, robot)
 }

@@ -1,36 +1,23 @@
-//! YAML, and so JSON, as a tree of values with their places.
+//! YAML, and so JSON, as a value with the place of each entry.
 
+use crate::json::{File, Misplaced, Place};
 use saphyr_parser::{Event, Parser, ScalarStyle, Span};
-use std::collections::BTreeSet;
+use serde_json::{Map, Value};
 
 /// Deeper nesting is refused.
 const MOST_DEPTH: usize = 32;
 
-/// A value and where it begins: line and column, from 1.
-#[derive(Clone, Debug, Default)]
-pub struct Node {
-    pub place: (usize, usize),
-    pub value: Value,
-}
-
-#[derive(Clone, Debug, Default)]
-pub enum Value {
-    #[default]
-    Null,
-    Number(f64),
-    Text(String),
-    /// `true` or `false`.
-    Flag(bool),
-    List(Vec<Node>),
-    /// Keys in the order of the file, with their places.
-    Map(Vec<(String, (usize, usize), Node)>),
-}
-
 /// Why a text is not a valid tree, and the place.
-pub type Wrong = ((usize, usize), String);
+type Wrong = ((usize, usize), String);
 
 /// The only document of a text.
-pub fn parse(text: &str) -> Result<Node, Wrong> {
+pub fn parse(name: &str, text: &str) -> Result<File, Misplaced> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let (value, place) = document(text).map_err(|(at, why)| Misplaced::at(name, at, why))?;
+    Ok(File::placed(name, value, place))
+}
+
+fn document(text: &str) -> Result<(Value, Place), Wrong> {
     let mut events = Events { parser: Parser::new_from_str(text), last: (1, 1) };
     loop {
         match events.next()? {
@@ -71,61 +58,69 @@ impl<'t> Events<'t> {
         }
     }
 
-    fn node(&mut self, event: Event<'t>, place: (usize, usize), depth: usize) -> Result<Node, Wrong> {
+    fn node(&mut self, event: Event<'t>, at: (usize, usize), depth: usize) -> Result<(Value, Place), Wrong> {
         if depth > MOST_DEPTH {
-            return Err((place, format!("more than {MOST_DEPTH} nested values")));
+            return Err((at, format!("more than {MOST_DEPTH} nested values")));
         }
+        let mut place = Place { at, ..Place::default() };
         let value = match event {
             Event::Scalar(.., Some(_)) | Event::SequenceStart(_, Some(_)) | Event::MappingStart(_, Some(_)) => {
-                return Err((place, "has a tag, expected a plain value".to_string()));
+                return Err((at, "has a tag, expected a plain value".to_string()));
             }
             Event::Scalar(text, style, ..) => scalar(&text, style),
             Event::SequenceStart(..) => {
                 let mut list = Vec::new();
                 loop {
                     match self.next()? {
-                        (Event::SequenceEnd, _) => break Value::List(list),
-                        (event, place) => list.push(self.node(event, place, depth + 1)?),
+                        (Event::SequenceEnd, _) => break Value::Array(list),
+                        (event, at) => {
+                            let (value, entry) = self.node(event, at, depth + 1)?;
+                            list.push(value);
+                            place.entries.push(entry);
+                        }
                     }
                 }
             }
             Event::MappingStart(..) => {
-                let (mut map, mut seen) = (Vec::new(), BTreeSet::new());
+                let mut map = Map::new();
                 loop {
-                    let (event, place) = self.next()?;
-                    let key = match event {
-                        Event::MappingEnd => break Value::Map(map),
-                        Event::Scalar(text, ..) => text.into_owned(),
-                        _ => return Err((place, "a key is a list or a map, expected a word".to_string())),
-                    };
-                    if !seen.insert(key.clone()) {
-                        return Err((place, format!("`{}` is given twice", crate::urdf::vocabulary::shown(&key))));
-                    }
                     let (event, at) = self.next()?;
-                    let value = self.node(event, at, depth + 1)?;
-                    map.push((key, place, value));
+                    let key = match event {
+                        Event::MappingEnd => break Value::Object(map),
+                        Event::Scalar(text, ..) => text.into_owned(),
+                        _ => return Err((at, "a key is a list or a map, expected a word".to_string())),
+                    };
+                    if map.contains_key(&key) {
+                        return Err((at, format!("`{}` is given twice", crate::urdf::vocabulary::shown(&key))));
+                    }
+                    let (event, start) = self.next()?;
+                    let (value, entry) = self.node(event, start, depth + 1)?;
+                    place.entries.push(Place { at, ..entry });
+                    place.keys.push(key.clone());
+                    map.insert(key, value);
                 }
             }
-            Event::Alias(_) => return Err((place, "is an alias, expected the value itself".to_string())),
-            _ => return Err((place, "expected a value".to_string())),
+            Event::Alias(_) => return Err((at, "is an alias, expected the value itself".to_string())),
+            _ => return Err((at, "expected a value".to_string())),
         };
-        Ok(Node { place, value })
+        Ok((value, place))
     }
 }
 
 /// By YAML's core schema; hexadecimal, octal, infinite numbers and NaN remain texts.
 fn scalar(text: &str, style: ScalarStyle) -> Value {
     if style != ScalarStyle::Plain {
-        return Value::Text(text.to_string());
+        return Value::from(text);
     }
     let is_number = text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'));
     match text {
         "" | "~" | "null" | "Null" | "NULL" => Value::Null,
-        "true" | "True" | "TRUE" => Value::Flag(true),
-        "false" | "False" | "FALSE" => Value::Flag(false),
-        _ => match text.parse::<f64>() {
-            Ok(x) if is_number && x.is_finite() => Value::Number(x),
-            _ => Value::Text(text.to_string()),
+        "true" | "True" | "TRUE" => Value::Bool(true),
+        "false" | "False" | "FALSE" => Value::Bool(false),
+        _ => match (text.parse::<i64>(), text.parse::<f64>()) {
+            (Ok(n), _) => Value::from(n),
+            (_, Ok(x)) if is_number && x.is_finite() => Value::from(x),
+            _ => Value::from(text),
         },
     }
 }
@@ -133,41 +128,24 @@ fn scalar(text: &str, style: ScalarStyle) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::json::Step::{Index, Key};
+    use serde_json::json;
 
     #[test]
     fn values_have_types_and_places() {
-        let root = parse("# a comment\na: [1, -2.5e-3, null]\n\"b c\":\n  - x\n  - '1'\n").expect("YAML");
-        assert_eq!(
-            format!("{:?}", root.value),
-            format!(
-                "{:?}",
-                Value::Map(vec![
-                    (
-                        "a".into(),
-                        (2, 1),
-                        Node {
-                            place: (2, 4),
-                            value: Value::List(vec![
-                                Node { place: (2, 5), value: Value::Number(1.0) },
-                                Node { place: (2, 8), value: Value::Number(-2.5e-3) },
-                                Node { place: (2, 17), value: Value::Null },
-                            ])
-                        }
-                    ),
-                    (
-                        "b c".into(),
-                        (3, 1),
-                        Node {
-                            place: (4, 3),
-                            value: Value::List(vec![
-                                Node { place: (4, 5), value: Value::Text("x".into()) },
-                                Node { place: (5, 5), value: Value::Text("1".into()) },
-                            ])
-                        }
-                    ),
-                ])
-            )
-        );
+        let file = parse("a.yaml", "# a comment\na: [1, -2.5e-3, null]\n\"b c\":\n  - x\n  - '1'\n").expect("YAML");
+        assert_eq!(file.value, json!({ "a": [1, -2.5e-3, null], "b c": ["x", "1"] }));
+        for (path, place) in [
+            (&[][..], (2, 1)),
+            (&[Key("a")], (2, 1)),
+            (&[Key("a"), Index(1)], (2, 8)),
+            (&[Key("a"), Index(9)], (2, 1)),
+            (&[Key("b c")], (3, 1)),
+            (&[Key("b c"), Index(0)], (4, 5)),
+            (&[Key("b c"), Index(1)], (5, 5)),
+        ] {
+            assert_eq!(file.position(path), place, "{path:?}");
+        }
     }
 
     #[test]
@@ -183,8 +161,8 @@ mod tests {
             (&deep, (1, 34), "more than 32"),
             ("{\"a\": [1, 2}", (1, 12), "not valid YAML"),
         ] {
-            let (at, found) = parse(text).expect_err(text);
-            assert!(at == place && found.contains(why), "{text}: {at:?} {found}");
+            let error = parse("a.yaml", text).expect_err(text);
+            assert!(error.position == Some(place) && error.message.contains(why), "{text}: {error}");
         }
     }
 }

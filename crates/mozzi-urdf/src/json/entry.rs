@@ -1,7 +1,6 @@
-//! A value of a file of JSON with its path, read as a text, a number, a vector, a pose.
+//! A value of a file of JSON or YAML with its path, read as a text, a number, a vector, a pose.
 
 use super::file::{File, Misplaced, Step, unknown_key};
-use crate::constraints::Entry;
 use crate::report::spelling::did_you_mean;
 use crate::urdf::vocabulary::list;
 use mozzi::SE3;
@@ -11,8 +10,8 @@ use std::fmt::Display;
 /// A value that was read, or an error with its place.
 pub type Read<T> = std::result::Result<T, Misplaced>;
 
-/// A value and its path in its file: the strict reader of all files of JSON. A value of another type than the expected
-/// one is an error with line and column.
+/// A value and its path in its file: the strict reader of all files of JSON and YAML. A value of another type than the
+/// expected one is an error with line and column.
 pub struct At<'v> {
     file: &'v File,
     /// The value; null if the file lacks it.
@@ -39,6 +38,16 @@ impl<'v> At<'v> {
 
     fn keys(&self) -> impl Iterator<Item = &'v str> {
         self.value.as_object().into_iter().flatten().map(|(key, _)| key.as_str())
+    }
+
+    /// Whether it is an object with this key; its value may be null.
+    pub fn has(&self, key: &str) -> bool {
+        self.value.get(key).is_some()
+    }
+
+    /// Line and column in the file, from 1.
+    pub fn position(&self) -> (usize, usize) {
+        self.file.position(&self.path)
     }
 
     /// An error for each key that is not known.
@@ -135,6 +144,14 @@ impl<'v> At<'v> {
         Ok(all.iter().enumerate().map(|(k, value)| self.entry(Step::Index(k), value)).collect())
     }
 
+    /// A list of texts.
+    ///
+    /// # Errors
+    /// As [`text`](Self::text).
+    pub fn texts(&self) -> Read<Vec<String>> {
+        self.list()?.iter().map(At::text).collect()
+    }
+
     /// A list of numbers.
     ///
     /// # Errors
@@ -174,50 +191,5 @@ impl<'v> At<'v> {
     /// Those of `read`.
     pub fn some<T>(&self, read: impl Fn(&Self) -> Read<T>) -> Read<Option<T>> {
         if self.value.is_null() { Ok(None) } else { read(self).map(Some) }
-    }
-}
-
-/// The interface that a reader of constraints needs.
-impl Entry for At<'_> {
-    type Error = Misplaced;
-
-    fn get(&self, key: &'static str) -> Self {
-        At::get(self, key)
-    }
-
-    fn keys(&self) -> Vec<String> {
-        At::keys(self).map(str::to_string).collect()
-    }
-
-    fn is_null(&self) -> bool {
-        self.value.is_null()
-    }
-
-    fn is_map(&self) -> bool {
-        self.value.is_object()
-    }
-
-    fn name(&self) -> String {
-        At::name(self)
-    }
-
-    fn text(&self) -> Read<String> {
-        At::text(self)
-    }
-
-    fn number(&self) -> Read<f64> {
-        At::number(self)
-    }
-
-    fn list(&self) -> Read<Vec<Self>> {
-        At::list(self)
-    }
-
-    fn wrong<T>(&self, expected: &str) -> Read<T> {
-        At::wrong(self, expected)
-    }
-
-    fn error<T>(&self, message: String) -> Read<T> {
-        At::error(self, message)
     }
 }

@@ -1,7 +1,7 @@
 //! A file of JSON: its value, and the line of each entry for messages. A name that is given twice is an error, as the
 //! last one would win silently.
 
-use super::position;
+use super::position::{self, Place};
 use crate::report::spelling::did_you_mean;
 use serde_core::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
@@ -16,18 +16,25 @@ pub enum Step<'p> {
     Index(usize),
 }
 
-/// A text of JSON and its value.
+/// A text of JSON, or of YAML, and its value.
 #[derive(Debug)]
 pub struct File {
     /// Its name in messages.
     pub name: String,
-    text: String,
+    places: Places,
     /// Its value.
     pub value: Value,
 }
 
-/// An error in a file of JSON.
 #[derive(Debug)]
+enum Places {
+    /// In this text of JSON.
+    Text(String),
+    Tree(Place),
+}
+
+/// An error in a file of JSON or YAML.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Misplaced {
     file: String,
     /// Line and column, from 1; none if the error concerns the whole file.
@@ -53,6 +60,11 @@ impl Misplaced {
     pub fn whole(file: impl Into<String>, message: impl Into<String>) -> Self {
         Misplaced { file: file.into(), position: None, message: message.into() }
     }
+
+    /// An error at a line and column, from 1.
+    pub(crate) fn at(file: &str, position: (usize, usize), message: impl Into<String>) -> Self {
+        Misplaced { file: file.to_string(), position: Some(position), message: message.into() }
+    }
 }
 
 impl File {
@@ -64,13 +76,25 @@ impl File {
         let text = text.into();
         let json = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let Once(value) = serde_json::from_str(json).map_err(|error| misread(name, &error))?;
-        Ok(File { name: name.to_string(), value, text })
+        Ok(File { name: name.to_string(), value, places: Places::Text(text) })
     }
 
-    /// A message about an entry; if there is no such entry, its line is that of the value in which it is missing.
+    /// A value whose places are known.
+    pub(crate) fn placed(name: &str, value: Value, place: Place) -> Self {
+        File { name: name.to_string(), value, places: Places::Tree(place) }
+    }
+
+    /// Line and column of an entry, from 1; if there is no such entry, those of the value in which it is missing.
+    pub fn position(&self, path: &[Step]) -> (usize, usize) {
+        match &self.places {
+            Places::Text(text) => position::find(text, path),
+            Places::Tree(place) => place.find(path),
+        }
+    }
+
+    /// A message about an entry.
     pub fn wrong(&self, path: &[Step], message: impl Into<String>) -> Misplaced {
-        let position = Some(position::find(&self.text, path));
-        Misplaced { file: self.name.clone(), position, message: message.into() }
+        Misplaced::at(&self.name, self.position(path), message)
     }
 }
 
@@ -79,7 +103,7 @@ fn misread(name: &str, error: &serde_json::Error) -> Misplaced {
     let why = error.to_string();
     let why = why.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&why);
     let message = if error.is_data() { why.to_string() } else { format!("is not valid JSON: {why}") };
-    Misplaced { file: name.to_string(), position: Some((line, column)), message }
+    Misplaced::at(name, (line, column), message)
 }
 
 /// "`frition` is not an entry of `joints[1]`, did you mean `friction`?", or the list of all known keys.

@@ -11,6 +11,7 @@ mod value;
 pub use entry::{At, Read};
 pub use file::{File, Misplaced, Step, unknown_key};
 pub use keys::Object;
+pub(crate) use position::Place;
 pub use value::{pose, print, rows, screws, vector};
 
 use crate::constraints;
@@ -102,8 +103,8 @@ fn description(at: &At) -> Read<Description> {
     }
     robot.rotors = all(&at.get("rotors"), rotor)?;
     robot.frames = all(&at.get("frames"), frame)?;
-    robot.constraints = all(&at.get("constraints"), |at: &At| constraints::constraint(at))?;
-    robot.motors = constraints::motors(&at.get("motors"))?;
+    robot.constraints = all(&at.get("constraints"), constraints::constraint)?;
+    robot.motors = at.get("motors").some(At::texts)?;
     robot.states = all(&at.get("states"), states::read)?;
     robot.start = at.get("start").some(At::text)?;
     lists_agree(&at.get("lists"), &robot)?;

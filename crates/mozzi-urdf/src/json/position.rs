@@ -20,6 +20,35 @@ pub fn find(text: &str, path: &[Step]) -> (usize, usize) {
     (before.matches('\n').count() + 1, column)
 }
 
+/// Where a value of a file begins, and where its entries do: line and column, from 1. The place of a map's entry is
+/// that of its key.
+#[derive(Debug, Default)]
+pub struct Place {
+    pub at: (usize, usize),
+    /// The keys of a map's entries.
+    pub keys: Vec<String>,
+    pub entries: Vec<Place>,
+}
+
+impl Place {
+    /// As [`find`].
+    pub fn find(&self, path: &[Step]) -> (usize, usize) {
+        let mut place = self;
+        for step in path {
+            let index = match step {
+                Step::Key(key) => place.keys.iter().position(|known| known == key),
+                Step::Index(index) if place.keys.is_empty() => Some(*index),
+                Step::Index(_) => None,
+            };
+            match index.and_then(|index| place.entries.get(index)) {
+                Some(entry) => place = entry,
+                None => break,
+            }
+        }
+        place.at
+    }
+}
+
 struct Scan<'t> {
     bytes: &'t [u8],
     /// Called at the first byte of a value, outside [`Self::value`].
