@@ -65,7 +65,7 @@ usage: cargo xtask COMMAND
 
   test    build and run everything: Python environment, reference numbers, every test,
           the Python package, its wheel, some fuzzing, the no_std check, every example, the main job,
-          the release build's operations on registers (none may be a call)
+          the release build's kernels (none may call what is compiled without FMA)
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
   check   formatting, clippy, documentation, licences, advisories, house rules, prose, length of README and DESIGN
           --quick                                     only what compiles nothing, in seconds: before each commit

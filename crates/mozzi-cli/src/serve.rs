@@ -207,9 +207,14 @@ mod tests {
         let us = format!("127.0.0.1:{}", address.port());
         let request = format!("GET / HTTP/1.1\r\nHost: {us}\r\n\r\n");
         let silent: Vec<_> = (0..100).map(|_| TcpStream::connect(address).expect("connected")).collect();
-        // does not read the page
-        let mut stuck = TcpStream::connect(address).expect("connected");
-        stuck.write_all(request.as_bytes()).expect("sent");
+        // more than are served at a time, and none reads the page
+        let stuck: Vec<_> = (0..2 * MOST)
+            .map(|_| {
+                let mut stuck = TcpStream::connect(address).expect("connected");
+                stuck.write_all(request.as_bytes()).expect("sent");
+                stuck
+            })
+            .collect();
         // sends one letter at a time
         let mut slow = TcpStream::connect(address).expect("connected");
         let dripping = thread::spawn(move || {
@@ -228,7 +233,7 @@ mod tests {
         let found = get(address, "/", &us);
         assert!(found.ends_with(&page[..1000]) && found.len() > page.len(), "{} bytes", found.len());
         assert!(begin.elapsed() < FOR_HEAD, "{:?}", begin.elapsed());
-        drop(silent);
+        drop((silent, stuck));
         let (said, took) = dripping.join().expect("no panic");
         assert!(said.starts_with("HTTP/1.1 408") && took < 2 * FOR_HEAD, "{said} after {took:?}");
     }

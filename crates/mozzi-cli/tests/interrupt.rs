@@ -1,4 +1,4 @@
-//! Ctrl-C in long computations, and progress on a terminal only. If the program is too fast to be interrupted, a test
+//! Ctrl-C and SIGTERM in long computations, and progress on a terminal only. If the program is too fast to be interrupted, a test
 //! says so.
 #![cfg(unix)]
 
@@ -31,12 +31,16 @@ fn batch<'a>(input: &'a str, output: &'a str) -> Vec<&'a str> {
     [&quantity[..], &["--in", input, "--out", output, "--threads", "1", "--kernels-only"]].concat()
 }
 
-/// The output after a SIGINT; nothing if the program had already ended. A program that has not yet begun to listen is
+/// The output after a signal; nothing if the program had already ended. A program that has not yet begun to listen is
 /// ended by the signal itself, without a word: then once more, with more time before the signal.
 fn interrupted(arguments: &[&str]) -> Option<Output> {
+    stopped_by("-INT", arguments)
+}
+
+fn stopped_by(signal: &str, arguments: &[&str]) -> Option<Output> {
     let mut wait = WAIT;
     let output = loop {
-        let output = after_a_signal(arguments, wait);
+        let output = after_a_signal(signal, arguments, wait);
         if output.status.signal().is_none() || wait > 8 * WAIT {
             break output;
         }
@@ -52,7 +56,7 @@ fn interrupted(arguments: &[&str]) -> Option<Output> {
     Some(output)
 }
 
-fn after_a_signal(arguments: &[&str], wait: Duration) -> Output {
+fn after_a_signal(signal: &str, arguments: &[&str], wait: Duration) -> Output {
     let program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
         .args(arguments)
         .stdout(Stdio::piped())
@@ -61,7 +65,7 @@ fn after_a_signal(arguments: &[&str], wait: Duration) -> Output {
         .expect("the program runs");
     std::thread::sleep(wait);
     let id = program.id().to_string();
-    assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill runs").success());
+    assert!(Command::new("kill").args([signal, &id]).status().expect("kill runs").success());
     program.wait_with_output().expect("it ends")
 }
 
@@ -75,9 +79,9 @@ fn count(said: &str, after: &str) -> usize {
 fn a_batch_leaves_the_states_so_far() {
     let folder = folder("interrupt_batch");
     let input = states(&folder, STATES);
-    for name in ["a.csv", "a.npz"] {
+    for (name, signal) in [("a.csv", "-INT"), ("a.npz", "-TERM")] {
         let out = folder.join(name).to_string_lossy().into_owned();
-        let Some(output) = interrupted(&batch(&input, &out)) else { continue };
+        let Some(output) = stopped_by(signal, &batch(&input, &out)) else { continue };
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let done = count(&said, &format!(" of {STATES} states"));
         assert!(done > 0 && said.contains("note: stopped by Ctrl-C: these are the first"), "{said}");

@@ -66,6 +66,39 @@ impl<'a, 'py> Arguments<'a, 'py> {
         Ok(())
     }
 
+    /// The parts of a `mozzi.Environment` that the signature has; the others have no effect on its quantity.
+    ///
+    /// # Errors
+    /// `TypeError` for another object, and for a part that is also an argument of its own.
+    pub fn parts_of(
+        &self,
+        environment: &Bound<'py, PyAny>,
+        signature: &Signature,
+    ) -> PyResult<Vec<(Slot, Bound<'py, PyAny>)>> {
+        let mut parts = Vec::new();
+        if !environment.is_instance(&environment.py().import("mozzi")?.getattr("Environment")?)? {
+            let kind = environment.get_type().name()?;
+            return Err(PyTypeError::new_err(format!("environment is a {kind}, expected a mozzi.Environment")));
+        }
+        for argument in signature.arguments.iter().filter(|argument| ENVIRONMENT.contains(&(argument.slot as usize))) {
+            let part = environment.getattr(argument.name)?;
+            if part.is_none() {
+                continue;
+            }
+            if self.get(argument.slot).is_some() {
+                let name = argument.name;
+                return Err(wrong(signature, format_args!("got '{name}' both by itself and in 'environment'")));
+            }
+            parts.push((argument.slot, part));
+        }
+        Ok(parts)
+    }
+
+    /// Sets these arguments, too.
+    pub fn extend(&mut self, given: &'a [(Slot, Bound<'py, PyAny>)]) {
+        given.iter().for_each(|(slot, value)| self.0[*slot as usize] = Some(value.as_borrowed()));
+    }
+
     /// True if an argument of the environment was given.
     #[inline(always)]
     pub fn have_environment(&self) -> bool {

@@ -63,6 +63,8 @@ optional! {
         "Acceleration (ω̇, v̇) of {s}: rad/s², m/s². Default: none.";
     Parameters PARAMETERS: "parameters", "ArrayLike | None" = "None", "array_like, shape (..., p), optional",
         "Inertial parameters in the order of `Model.parameters`, for all states or for each. Default: the model's.";
+    Environment ENVIRONMENT_OBJECT: "environment", "Environment | None" = "None", "mozzi.Environment, optional",
+        "Gravity, motion of the base, wrenches and parameters in one object; an argument of its own must not repeat it.";
     Out OUT: "out", "Array | None" = "None", "numpy.ndarray, optional",
         "Array in which the result is written.";
     Threads THREADS: "threads", "int | None" = "None", "int, optional",
@@ -80,7 +82,7 @@ const SEVERAL_OUT: Argument = Argument {
 pub const SLOTS: usize = Slot::Threads as usize + 1;
 /// The slots of the state, in the order of the declaration.
 pub const INPUTS: [Slot; 4] = [Slot::Input0, Slot::Input1, Slot::Input2, Slot::Input3];
-/// The slots of the environment.
+/// The slots of the environment's parts.
 pub const ENVIRONMENT: RangeInclusive<usize> = Slot::TipWrench as usize..=Slot::Parameters as usize;
 
 /// The arguments of a method, in their order.
@@ -114,6 +116,8 @@ impl Signature {
         arguments.extend(has(Uses::BASE_TWIST, BASE_TWIST));
         arguments.extend(has(Uses::BASE_ACCELERATION, BASE_ACCELERATION));
         arguments.extend(depends_on_parameters(declaration).then_some(PARAMETERS));
+        let has_environment = arguments.iter().any(|argument| ENVIRONMENT.contains(&(argument.slot as usize)));
+        arguments.extend(has_environment.then_some(ENVIRONMENT_OBJECT));
         arguments.push(if declaration.outputs.len() > 1 { SEVERAL_OUT } else { OUT });
         arguments.push(THREADS);
         Signature { name, arguments, required, positional }

@@ -205,6 +205,28 @@ def check_one_by_one(method, robot, random, one_by_one):
     return check
 
 
+def test_an_environment_is_its_parts(ur5, random):
+    gravity, wrench = random.uniform(-10, 10, (5, 3)), random.uniform(-3, 3, 6)
+    parameters = ur5.parameters * 1.1
+    world = mozzi.Environment(gravity=gravity, tip_wrench=wrench, parameters=parameters)
+    state = random.uniform(-1, 1, (3, 6))
+    for method in ("inverse_dynamics", "forward_dynamics"):
+        call = getattr(ur5, method)
+        expected = call(*state, wrench, gravity=gravity, parameters=parameters)
+        assert np.array_equal(call(*state, environment=world), expected)
+    # the mass matrix takes what it depends on
+    assert np.array_equal(ur5.mass_matrix(state[0], environment=world), ur5.mass_matrix(state[0], parameters=parameters))
+    own = ur5.inverse_dynamics(*state)
+    assert np.array_equal(ur5.inverse_dynamics(*state, environment=mozzi.Environment()), own)
+    assert np.array_equal(ur5.inverse_dynamics(*state, environment=None), own)
+    with pytest.raises(TypeError, match="got 'gravity' both by itself and in 'environment'"):
+        ur5.inverse_dynamics(*state, gravity=gravity, environment=world)
+    with pytest.raises(TypeError, match=r"environment is a dict, expected a mozzi.Environment"):
+        ur5.inverse_dynamics(*state, environment={"gravity": gravity})
+    with pytest.raises(ValueError, match="gravity has shape"):
+        ur5.inverse_dynamics(*state, environment=mozzi.Environment(gravity=[0, 9.81]))
+
+
 @pytest.mark.parametrize("method", taking("gravity"))
 def test_gravity_of_each_state(method, ur5, random):
     gravity = random.uniform(-10, 10, (5, 3))

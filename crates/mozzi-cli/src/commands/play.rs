@@ -21,6 +21,9 @@ const FIRST: &str = "panda";
 
 #[derive(Args, Debug)]
 pub struct PlayArguments {
+    /// Write the page to a file instead of serving it
+    #[arg(long, value_name = "FILE.html")]
+    out: Option<String>,
     #[command(flatten)]
     robot: RobotArguments,
     #[command(flatten)]
@@ -30,9 +33,6 @@ pub struct PlayArguments {
     /// Show a lesson next to its robot: a section of Modern Robotics, 8.1 to 8.7
     #[arg(long, value_name = "SECTION")]
     lesson: Option<String>,
-    /// Write the page to a file instead of serving it
-    #[arg(long, value_name = "FILE.html")]
-    out: Option<String>,
     /// Port on 127.0.0.1 [default: a free one]
     #[arg(long, value_name = "PORT", conflicts_with = "out")]
     port: Option<u16>,

@@ -11,6 +11,9 @@ use serde_json::json;
 
 #[derive(Args, Debug)]
 pub struct ViewArguments {
+    /// Write the page to a file instead of serving it
+    #[arg(long, value_name = "FILE.html")]
+    out: Option<String>,
     #[command(flatten)]
     robot: RobotArguments,
     /// A table with columns t, theta_1 … and optionally dtheta_, ddtheta_, tau_ and the tip's wrench; without it,
@@ -20,9 +23,6 @@ pub struct ViewArguments {
     page: PageArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// Write the page to a file instead of serving it
-    #[arg(long, value_name = "FILE.html")]
-    out: Option<String>,
     /// Port on 127.0.0.1 [default: a free one]
     #[arg(long, value_name = "PORT", conflicts_with = "out")]
     port: Option<u16>,

@@ -8,8 +8,7 @@ import json
 import sys
 
 from playwright.sync_api import sync_playwright
-
-ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
+from visit import empty, launch
 
 STATE = """(frames) => ({
   theta: mozzi.state().theta,
@@ -45,8 +44,7 @@ PAINTED = """() => {
 
 
 def look(browser, job):
-    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]}, device_scale_factor=0.5)
-    page.set_default_timeout(300_000)  # a busy machine draws slowly
+    page = empty(browser, job)
     found = {"errors": [], "requests": [], "states": []}
     page.on("console", lambda said: said.type == "error" and found["errors"].append(said.text))
     page.on("pageerror", lambda error: found["errors"].append(str(error)))
@@ -133,6 +131,6 @@ def scrub(page):
 
 
 with sync_playwright() as playwright:
-    browser = playwright.chromium.launch(executable_path=sys.argv[1], args=ARGUMENTS)
+    browser = launch(playwright)
     print(json.dumps([look(browser, job) for job in json.load(sys.stdin)]))
     browser.close()

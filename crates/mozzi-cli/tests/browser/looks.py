@@ -3,7 +3,7 @@
 A job: {"do": name of a function below, "url", "width", "height", …}; with "looks" also the least contrast in light and dark.
 """
 
-from visit import least, serve
+from visit import empty, least, serve
 
 DROP = "(texts) => mozzi.openTexts(texts)"
 
@@ -221,7 +221,7 @@ def lesson(page, job):
         found["ellipse"] = page.evaluate("() => mozzi.app.lesson.ellipses[0].ellipse")
         found["caption"] = page.inner_text("#page-lesson .torque figcaption")
         link = page.evaluate("() => mozzi.app.share()")
-        other = page.context.browser.new_page()
+        other = empty(page.context.browser, job)
         other.goto(link)
         other.evaluate("mozzi.ready.then(() => true)")
         found["linked"] = [other.inner_text("#page-lesson > .note"), other.evaluate("() => [...mozzi.state().theta]")]

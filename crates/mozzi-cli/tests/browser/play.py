@@ -3,7 +3,7 @@
 A job: {"do": name of a function below, "url", "width", "height", …}. Every answer has "errors" of the console, "requests" and the page's width.
 """
 
-from visit import contrast, serve
+from visit import contrast, empty, serve
 
 DROP = """async (texts) => {
   const transfer = new DataTransfer();
@@ -109,7 +109,8 @@ def drag(page, job):
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 60, y + 10, steps=4)
-    page.wait_for_function("() => mozzi.state().push !== null")
+    # the arrow comes with the next picture
+    page.wait_for_function("() => mozzi.state().push !== null && mozzi.app.stage.push.visible")
     pushed = page.evaluate("() => ({ push: mozzi.state().push, shown: mozzi.app.stage.push.visible })")
     page.mouse.up()
     page.click("#play")
@@ -125,7 +126,7 @@ def share(page, job):
     before = page.evaluate(STATE)
     masses = "() => mozzi.compute({ quantity: 'mass_matrix' }).M"
     found = {"link": len(link), "before": before, "M": [page.evaluate(masses)]}
-    other = page.context.browser.new_page()
+    other = empty(page.context.browser, job)
     other.goto(link)
     other.evaluate("mozzi.ready.then(() => true)")
     found["after"] = other.evaluate(STATE)

@@ -6,6 +6,8 @@ import sys
 from playwright.sync_api import sync_playwright
 
 ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"]
+# Pixels for each CSS pixel: the processor draws a quarter of the picture, and the layout is that of any screen.
+PIXELS = 0.5
 # What the drawing by the processor says of itself.
 NOISE = ("GPU stall", "GL Driver Message", "software WebGL")
 # Every text below the scene, in order.
@@ -57,9 +59,19 @@ def contrast(page):
     return [*found, least(page)]
 
 
-def visit(browser, job, do):
-    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]}, device_scale_factor=0.5)
+def empty(browser, job):
+    """A page of the job's size."""
+    page = browser.new_page(viewport={"width": job["width"], "height": job["height"]}, device_scale_factor=PIXELS)
     page.set_default_timeout(300_000)  # a busy machine draws slowly
+    return page
+
+
+def launch(playwright):
+    return playwright.chromium.launch(executable_path=sys.argv[1], args=ARGUMENTS)
+
+
+def visit(browser, job, do):
+    page = empty(browser, job)
     page.add_init_script(HINTS)
     found = {"errors": [], "requests": []}
     said = lambda message: any(noise in message.text for noise in NOISE) or found["errors"].append(message.text)
@@ -78,6 +90,6 @@ def visit(browser, job, do):
 
 def serve(do):
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=sys.argv[1], args=ARGUMENTS)
+        browser = launch(playwright)
         print(json.dumps([visit(browser, job, do) for job in json.load(sys.stdin)]))
         browser.close()

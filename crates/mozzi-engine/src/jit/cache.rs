@@ -3,15 +3,20 @@
 
 use super::{Form, Kernel, Refusal, Shape};
 use crate::program::{Program, Step};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError, Weak};
 
 /// Two hashes of the program, the shape, the form and the condensed outputs. The cache keeps no program to compare
 /// with: two different ones have the same key with a probability of 2⁻¹²⁸.
 type Key = [u64; 2];
 
-static CACHE: LazyLock<Mutex<HashMap<Key, Weak<Kernel>>>> = LazyLock::new(Mutex::default);
+type Cache = BTreeMap<Key, Weak<Kernel>>;
+
+static CACHE: Mutex<Cache> = Mutex::new(Cache::new());
+
+/// Looks at the lock before the cache is not used.
+const LOOKS: usize = 1000;
 
 impl Kernel {
     /// As [`condensing`](Self::condensing), but the kernel of an equal program, where there is one, is returned again.
@@ -20,19 +25,28 @@ impl Kernel {
     /// As [`new`](Self::new).
     pub fn shared(program: &Program, shape: Shape, form: Form, condensed: usize) -> Result<Arc<Kernel>, Refusal> {
         let key = [0, 1].map(|seed: u8| key(seed, program, shape, form, condensed));
-        if let Some(kernel) = cache().get(&key).and_then(Weak::upgrade) {
+        if let Some(kernel) = cache().and_then(|cache| cache.get(&key)?.upgrade()) {
             return Ok(kernel);
         }
         let kernel = Arc::new(Kernel::condensing(program, shape, form, condensed)?); // the cache is not locked meanwhile
-        let mut cache = cache();
-        cache.retain(|_, kernel| kernel.strong_count() > 0);
-        cache.insert(key, Arc::downgrade(&kernel));
+        if let Some(mut cache) = cache() {
+            cache.retain(|_, kernel| kernel.strong_count() > 0);
+            cache.insert(key, Arc::downgrade(&kernel));
+        }
         Ok(kernel)
     }
 }
 
-fn cache() -> MutexGuard<'static, HashMap<Key, Weak<Kernel>>> {
-    CACHE.lock().unwrap_or_else(PoisonError::into_inner)
+/// None if it remains locked: in a fork, the thread that locked it is missing. It is locked for microseconds otherwise.
+fn cache() -> Option<MutexGuard<'static, Cache>> {
+    for _ in 0..LOOKS {
+        match CACHE.try_lock() {
+            Ok(cache) => return Some(cache),
+            Err(TryLockError::Poisoned(cache)) => return Some(cache.into_inner()),
+            Err(TryLockError::WouldBlock) => std::thread::yield_now(),
+        }
+    }
+    None
 }
 
 /// Numbers by their bits: −0 and 0 are different programs.
@@ -85,5 +99,13 @@ mod tests {
         let (mut y, mut squares) = ([0.0_f64], [0.0]);
         again.call(&[&[2.0, 1.0]], &mut [&mut y], &mut squares);
         assert!((y[0] - 8.0).abs() < 1e-15);
+        // a lock that nobody opens stops nobody
+        std::thread::scope(|scope| {
+            let held = CACHE.lock().expect("sound");
+            let made = scope.spawn(|| Kernel::shared(&scaled(3.5), Shape::OneF64, Form::Blocks, usize::MAX));
+            let made = made.join().expect("no panic").expect("a short program");
+            assert!(!Arc::ptr_eq(&again, &made));
+            drop(held);
+        });
     }
 }

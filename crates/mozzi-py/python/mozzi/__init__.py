@@ -6,6 +6,7 @@ positive.
 
 from . import _quantities, controllers, conventions, models, modern_robotics, trajectories
 from ._compare import Comparison, compare
+from ._environment import Environment
 from ._identify import Excitation, Forces, Identification, Verdict, Weighed, excite, identify
 from ._mozzi import (
     Derivation,
@@ -54,6 +55,7 @@ __all__ = [
     "DivergedError",
     "DynamicsWarning",
     "Engine",
+    "Environment",
     "Excitation",
     "Forces",
     "Identification",

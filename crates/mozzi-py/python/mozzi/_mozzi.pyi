@@ -7,6 +7,7 @@ from typing import Any, Literal, Protocol, overload
 
 from numpy.typing import ArrayLike
 
+from ._environment import Environment
 from ._gpu import Gpu
 from ._notebook import Page
 from ._quantities import *
@@ -304,90 +305,97 @@ class Model:
         self, theta: ArrayLike, dtheta: ArrayLike, ddtheta: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Array:
         """τ = M(θ)θ̈ + c(θ, θ̇) + g(θ) + JᵀF + f(θ, θ̇), the joint forces of a motion."""
     def forward_dynamics(
         self, theta: ArrayLike, dtheta: ArrayLike, tau: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Array:
         """θ̈ = M⁻¹(τ − c − g − JᵀF − f), the accelerations that joint forces produce."""
     def forward_dynamics_by_mass_matrix(
         self, theta: ArrayLike, dtheta: ArrayLike, tau: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Array:
         """θ̈ = M⁻¹(τ − c − g − JᵀF − f), by composite bodies and the factors of M along the tree."""
     def forward_dynamics_by_inverse_dynamics(
         self, theta: ArrayLike, dtheta: ArrayLike, tau: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Array:
         """θ̈ = M⁻¹(τ − c − g − JᵀF − f), M and h by calls of inverse dynamics."""
     def mass_matrix(
-        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """M(θ), symmetric, with the rotors' inertia on its diagonal."""
     def mass_matrix_inverse(
-        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """M(θ)⁻¹, the accelerations that a unit of each joint force produces."""
     def mass_matrix_rate(
-        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None,
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """Ṁ(θ, θ̇) = C + Cᵀ."""
     def coriolis_matrix(
-        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None,
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """C(θ, θ̇) of the Christoffel symbols: c = Cθ̇, and Ṁ − 2C is skew-symmetric."""
     def velocity_product(
-        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None,
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """c(θ, θ̇) = Cθ̇, the Coriolis and centripetal forces."""
     def gravity_forces(
         self, theta: ArrayLike, *, gravity: ArrayLike | None = None, parameters: ArrayLike | None = None,
-        out: Array | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """g(θ), the joint forces that hold the robot against gravity."""
     def bias_forces(
         self, theta: ArrayLike, dtheta: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Array:
         """h(θ, θ̇) = c + g, with JᵀF and the base's terms where they are given; without friction and springs."""
     def tip_forces(
         self, theta: ArrayLike, tip_wrench: ArrayLike | None = None, *,
-        applied_wrenches: Mapping[str, ArrayLike] | None = None, out: Array | None = None, threads: int | None = None
+        applied_wrenches: Mapping[str, ArrayLike] | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """JᵀF of the wrenches that frames apply to the environment."""
     def joint_friction(
-        self, dtheta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, dtheta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """f(θ̇) = dθ̇ + μ sgn θ̇ of each joint, with sgn 0 = 0."""
     def spring_forces(
-        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """f_s(θ) = k(θ − θ₀) of each joint, θ not wrapped; kφ of a ball, φ its rotation vector."""
     def kinetic_energy(
         self, theta: ArrayLike, dtheta: ArrayLike, *, base_twist: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Any:
         """½θ̇ᵀMθ̇, of all that moves."""
     def potential_energy(
         self, theta: ArrayLike, *, gravity: ArrayLike | None = None, parameters: ArrayLike | None = None,
-        out: Array | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Any:
         """−Σ m gᵀp + Σ ½k(θ − θ₀)², p seen from the origin of {s}."""
     def forward_kinematics(
@@ -432,14 +440,16 @@ class Model:
         coordinates: Literal["body", "space"] = "body", rows: Sequence[int] | None = None,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> TaskSpaceDynamics:
         """Λ and η of 𝓕 = Λ(θ)𝒱̇ + η(θ, 𝒱), the dynamics as the rows of a frame's twist show them."""
     def constrained_forward_dynamics(
         self, theta: ArrayLike, dtheta: ArrayLike, tau: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> ConstrainedForwardDynamics:
         """θ̈ and λ of τ = Mθ̈ + c + g + JᵀF + f + Aᵀλ with Aθ̈ + Ȧθ̇ = 0."""
     def constraint_jacobian(self, theta: ArrayLike, *, out: Array | None = None, threads: int | None = None) -> Array:
@@ -451,27 +461,29 @@ class Model:
     def constraint_residual(self, theta: ArrayLike, *, out: Array | None = None, threads: int | None = None) -> Array:
         """φ(θ), by how much the positions violate the constraints."""
     def constraint_projection(
-        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹: Pτ = P(Mθ̈ + h)."""
     def constraint_impulse(
         self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None,
-        out: Sequence[Array] | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Sequence[Array] | None = None, threads: int | None = None
     ) -> ConstraintImpulse:
         """θ̇⁺ and Λ of M(θ̇⁺ − θ̇) = −AᵀΛ with Aθ̇⁺ = 0: the velocities after the constraints have begun to act."""
     def inverse_dynamics_derivatives(
         self, theta: ArrayLike, dtheta: ArrayLike, ddtheta: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> InverseDynamicsDerivatives:
         """∂τ/∂θ, ∂τ/∂θ̇ and ∂τ/∂θ̈ = M, row i of τ_i; by θ along the velocities."""
     def forward_dynamics_derivatives(
         self, theta: ArrayLike, dtheta: ArrayLike, tau: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> ForwardDynamicsDerivatives:
         """θ̈, ∂θ̈/∂θ, ∂θ̈/∂θ̇ and ∂θ̈/∂τ = M⁻¹, row i of θ̈_i; by θ along the velocities."""
     def inverse_dynamics_vjp(
@@ -479,14 +491,15 @@ class Model:
         tip_wrench: ArrayLike | None = None, *, gravity: ArrayLike | None = None,
         applied_wrenches: Mapping[str, ArrayLike] | None = None, base_twist: ArrayLike | None = None,
         base_acceleration: ArrayLike | None = None, parameters: ArrayLike | None = None,
-        out: Sequence[Array] | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Sequence[Array] | None = None, threads: int | None = None
     ) -> InverseDynamicsVjp:
         """xᵀ∂τ/∂θ, xᵀ∂τ/∂θ̇ and xᵀ∂τ/∂θ̈ = Mx, the gradient of xᵀτ; by θ along the velocities."""
     def forward_dynamics_vjp(
         self, theta: ArrayLike, dtheta: ArrayLike, tau: ArrayLike, x: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> ForwardDynamicsVjp:
         """xᵀ∂θ̈/∂θ, xᵀ∂θ̈/∂θ̇ and xᵀ∂θ̈/∂τ = M⁻¹x, the gradient of xᵀθ̈; by θ along the velocities."""
     def inverse_dynamics_parameter_vjp(
@@ -494,7 +507,7 @@ class Model:
         tip_wrench: ArrayLike | None = None, *, gravity: ArrayLike | None = None,
         applied_wrenches: Mapping[str, ArrayLike] | None = None, base_twist: ArrayLike | None = None,
         base_acceleration: ArrayLike | None = None, parameters: ArrayLike | None = None,
-        out: Sequence[Array] | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Sequence[Array] | None = None, threads: int | None = None
     ) -> InverseDynamicsParameterVjp:
         """xᵀ∂τ/∂π = xᵀY, and xᵀ∂τ by the joints' placements and axes and by gravity: the gradient of xᵀτ by the
         robot."""
@@ -502,18 +515,19 @@ class Model:
         self, theta: ArrayLike, dtheta: ArrayLike, tau: ArrayLike, x: ArrayLike, tip_wrench: ArrayLike | None = None, *,
         gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
         base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> ForwardDynamicsParameterVjp:
         """xᵀ∂θ̈/∂π, and xᵀ∂θ̈ by the joints' placements and axes and by gravity: the gradient of xᵀθ̈ by the robot."""
     def mass_matrix_product_vjp(
         self, theta: ArrayLike, ddtheta: ArrayLike, x: ArrayLike, *, parameters: ArrayLike | None = None,
-        out: Sequence[Array] | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Sequence[Array] | None = None, threads: int | None = None
     ) -> MassMatrixProductVjp:
         """xᵀ∂(M(θ)θ̈)/∂θ along the velocities, and Mx: the gradient of xᵀMθ̈."""
     def energy_gradients(
         self, theta: ArrayLike, dtheta: ArrayLike, *, gravity: ArrayLike | None = None,
-        base_twist: ArrayLike | None = None, parameters: ArrayLike | None = None, out: Sequence[Array] | None = None,
-        threads: int | None = None
+        base_twist: ArrayLike | None = None, parameters: ArrayLike | None = None,
+        environment: Environment | None = None, out: Sequence[Array] | None = None, threads: int | None = None
     ) -> EnergyGradients:
         """∂𝒦/∂θ, ∂𝒦/∂θ̇ and ∂𝒫/∂θ of the kinetic and potential energy; by θ along the velocities."""
     def frame_twist_vjp(
@@ -530,78 +544,84 @@ class Model:
         frame."""
     def momentum_vjp(
         self, theta: ArrayLike, dtheta: ArrayLike, w: ArrayLike, *, about: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> MomentumVjp:
         """wᵀ∂h/∂θ along the velocities, and wᵀ∂h/∂θ̇: the gradient of wᵀh, h the momentum about a point of {s}."""
     def momentum_rate_vjp(
         self, theta: ArrayLike, dtheta: ArrayLike, ddtheta: ArrayLike, w: ArrayLike, *, about: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> MomentumRateVjp:
         """wᵀ∂ḣ/∂θ along the velocities, wᵀ∂ḣ/∂θ̇ and wᵀ∂ḣ/∂θ̈: the gradient of wᵀḣ, ḣ the rate of the momentum."""
     def gravity_forces_derivative(
         self, theta: ArrayLike, *, gravity: ArrayLike | None = None, parameters: ArrayLike | None = None,
-        out: Array | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """∂g/∂θ."""
     def tip_forces_derivative(
         self, theta: ArrayLike, tip_wrench: ArrayLike | None = None, *,
-        applied_wrenches: Mapping[str, ArrayLike] | None = None, out: Array | None = None, threads: int | None = None
+        applied_wrenches: Mapping[str, ArrayLike] | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """∂(JᵀF)/∂θ of the wrenches that frames apply to the environment."""
     def mass_matrix_product_derivative(
-        self, theta: ArrayLike, x: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, x: ArrayLike, *, parameters: ArrayLike | None = None,
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """∂(M(θ)x)/∂θ for a constant x."""
     def center_of_mass(
-        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """c, the centre of mass of all that moves, in {s}."""
     def center_of_mass_velocity(
-        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None,
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """ċ of the centre of mass, in the axes of {s}."""
     def center_of_mass_acceleration(
         self, theta: ArrayLike, dtheta: ArrayLike, ddtheta: ArrayLike, *, parameters: ArrayLike | None = None,
-        out: Array | None = None, threads: int | None = None
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """c̈ of the centre of mass, in the axes of {s}."""
     def center_of_mass_jacobian(
-        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """J of the centre of mass: ċ = Jθ̇, in the axes of {s}."""
     def momentum(
         self, theta: ArrayLike, dtheta: ArrayLike, *, about: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Array:
         """h, the momentum (angular, linear) of all that moves, about a point of {s}, in the axes of {s}."""
     def momentum_rate(
         self, theta: ArrayLike, dtheta: ArrayLike, ddtheta: ArrayLike, *, about: ArrayLike | None = None,
-        parameters: ArrayLike | None = None, out: Array | None = None, threads: int | None = None
+        parameters: ArrayLike | None = None, environment: Environment | None = None, out: Array | None = None,
+        threads: int | None = None
     ) -> Array:
         """ḣ of the momentum about a fixed point of {s}, along a motion."""
     def centroidal_momentum_matrix(
-        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, *, parameters: ArrayLike | None = None, environment: Environment | None = None,
+        out: Array | None = None, threads: int | None = None
     ) -> Array:
         """A_G(θ), angular rows first: h_G = A_Gθ̇ is the momentum about the centre of mass."""
     def centroidal_momentum_bias(
-        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        self, theta: ArrayLike, dtheta: ArrayLike, *, parameters: ArrayLike | None = None,
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """Ȧ_Gθ̇, of ḣ_G = A_Gθ̈ + Ȧ_Gθ̇."""
     def regressor(
         self, theta: ArrayLike, dtheta: ArrayLike, ddtheta: ArrayLike, *, gravity: ArrayLike | None = None,
-        base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None, out: Array | None = None,
-        threads: int | None = None
+        base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
+        environment: Environment | None = None, out: Array | None = None, threads: int | None = None
     ) -> Array:
         """Y(θ, θ̇, θ̈): τ = Yπ + JᵀF, with π the robot's parameters."""
     def energy_regressors(
         self, theta: ArrayLike, dtheta: ArrayLike, *, gravity: ArrayLike | None = None,
-        base_twist: ArrayLike | None = None, out: Sequence[Array] | None = None, threads: int | None = None
+        base_twist: ArrayLike | None = None, environment: Environment | None = None, out: Sequence[Array] | None = None,
+        threads: int | None = None
     ) -> EnergyRegressors:
         """the rows that give the kinetic and the potential energy of the parameters π."""
     # End of the quantities.

@@ -253,7 +253,7 @@ class Trajectories(NamedTuple):
     contact_names: list[str]
     """Names of the contacts, the point's and the plane's."""
     one_sided: "OneSided | None"
-    """The worst of all robots; None if they moved together in registers."""
+    """The worst of all robots; None if machine code moved them all."""
 
     @property
     def energy(self) -> Array:

@@ -25,8 +25,13 @@ pub fn call<'py>(
     named: &[Borrowed<'_, 'py, PyAny>],
 ) -> PyResult<Bound<'py, PyAny>> {
     let robot = model.cast::<PyModel>()?.get().robot();
+    let parts;
     let mut given = Arguments::default();
     given.fill(&SIGNATURES[index], positional, names, named)?;
+    if let Some(environment) = given.get(Slot::Environment) {
+        parts = given.parts_of(environment, &SIGNATURES[index])?;
+        given.extend(&parts);
+    }
     let rows: Option<Vec<usize>>;
     let mut query = Query::at(index);
     match query.declaration().of {

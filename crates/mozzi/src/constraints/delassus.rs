@@ -5,7 +5,7 @@
 //!
 //! > λ₀ = 0,  λ ← λ + (G + R)⁻¹(b − Gλ),  three times,  R = diag ρ,
 //!
-//! which needs no decision about the rank and so works on registers, dual numbers and recordings. Its error in the
+//! which needs no decision about the rank and so works on dual numbers and recordings. Its error in the
 //! direction of an eigenvalue σ of R^(−½) G R^(−½) is (1/(σ + 1))³ (Carpentier, Budhiraja and Mansard 2021, with one
 //! ρ).
 //! After a step by δ, the residual b − Gλ is Rδ.

@@ -1,4 +1,4 @@
-//! The rotation vector of a unit quaternion, for numbers without an order, such as registers and recordings.
+//! The rotation vector of a unit quaternion, for numbers without an order, such as recordings.
 
 use crate::linalg::{Mat3, Vec3};
 use crate::scalar::Scalar;
