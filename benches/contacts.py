@@ -67,6 +67,11 @@ def of_urdf(path):
     return spec.compile()
 
 
+def within(low, high):
+    """A joint's start: 0, or its limit next to it."""
+    return min(max(0.0, low), high)
+
+
 def by_mujoco(path):
     """Seconds of mj_step in the first and in the third second of the motion."""
     start = height(path)
@@ -75,6 +80,9 @@ def by_mujoco(path):
     data = mujoco.MjData(model)
     if start is not None:
         data.qpos[2] = start
+        for joint in range(1, model.njnt):
+            low, high = model.jnt_range[joint] if model.jnt_limited[joint] else (0.0, 0.0)
+            data.qpos[model.jnt_qposadr[joint]] = within(low, high)
     seconds = []
     for _ in range(3):
         start = time.process_time()
@@ -90,8 +98,10 @@ def by_mozzi(program, path):
     flags = []
     if height(path) is not None:
         found = subprocess.run([program, "info", str(path), "--floating", "--json"], capture_output=True, text=True)
-        nq = json.loads(found.stdout)["nq"]
-        flags = ["--floating", "--theta", ",".join(map(str, [1, 0, 0, 0, 0, 0, height(path)] + [0] * (nq - 7)))]
+        robot = json.loads(found.stdout)
+        limits = {joint["name"]: joint["limits"]["position"] or (0.0, 0.0) for joint in robot["joints"]}
+        start = [within(*limits[name]) for name in robot["independent_joints"]]
+        flags = ["--floating", "--theta", ",".join(map(str, [1, 0, 0, 0, 0, 0, height(path), *start]))]
 
     def run(duration):
         command = [program, "simulate", str(path), "--ground", "--method", "moreau", "--step", "0.001", "--time", str(duration), *flags]
