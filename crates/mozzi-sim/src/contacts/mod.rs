@@ -99,6 +99,14 @@ impl Surface {
         (self.T.R * Vec3([0.0, 0.0, 1.0])).dot(at - self.T.p)
     }
 
+    /// The distances of points of a frame whose configuration in {s} is T: −(n · x + d) with n, into the plane, and x,
+    /// the touching point, in the frame.
+    pub(crate) fn seen_from(&self, T: SE3) -> impl Fn(&ContactPoint) -> f64 + use<> {
+        let n = -(self.T.R * Vec3([0.0, 0.0, 1.0]));
+        let (d, n) = (n.dot(T.p - self.T.p), T.R.inverse_mul(n));
+        move |point| -(n.dot(point.farthest(n)) + d)
+    }
+
     /// A contact point next to it; T is the configuration of its frame in {s}.
     pub(crate) fn touch(&self, point: &ContactPoint, T: SE3) -> Touch {
         let axes = self.T.R.matrix().transpose().rows().map(Vec3);

@@ -64,16 +64,17 @@ impl Impulses<'_> {
                 if height(surface, T * cloud.center).min(height(surface_next, T_next * cloud.center)) > self.reach {
                     continue;
                 }
+                let (gap_now, gap_then) = (surface.seen_from(T), surface_next.seen_from(T_next));
                 let candidate = |&point: &usize| {
                     let of: &ContactPoint = &self.contacts.points[point];
-                    let gap_next = surface_next.touch(of, T_next).gap;
-                    let touch = surface.touch(of, T);
-                    let gap = touch.gap.min(gap_next);
-                    let key = Key::Contact(point, plane);
-                    let carried = gap <= self.reach && self.memory.carrying.iter().any(|&(other, _)| other == key);
-                    Candidate { point, touch, gap, carried }
+                    let gap = gap_now(of).min(gap_then(of));
+                    (gap <= self.reach).then(|| {
+                        let key = Key::Contact(point, plane);
+                        let carried = self.memory.carrying.iter().any(|&(other, _)| other == key);
+                        Candidate { point, touch: surface.touch(of, T), gap, carried }
+                    })
                 };
-                let near = cloud.points.iter().map(candidate).filter(|candidate| candidate.gap <= self.reach);
+                let near = cloud.points.iter().filter_map(candidate);
                 found.extend(few(near.collect()).into_iter().map(|one| (one.point, plane, one.touch)));
             }
         }

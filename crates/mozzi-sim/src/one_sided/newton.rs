@@ -57,12 +57,13 @@ struct Linear {
 fn linearized(problem: &Problem, p: &DVector<f64>) -> Linear {
     let (G, u, m) = (&problem.G, problem.velocity(p), p.len());
     let (mut F, mut free, mut A) = (DVector::zeros(m), Vec::with_capacity(m), Vec::with_capacity(m * m));
+    let row = |r: usize| &G.as_slice()[r * m..][..m]; // symmetric
     for (i, law) in problem.blocks() {
         let argument = |r: usize| p[r] - u[r];
         let mut velocity = |r: usize| {
             F[r] = u[r];
             free.push(r);
-            A.extend_from_slice(&G.as_slice()[r * m..][..m]); // symmetric
+            A.extend_from_slice(row(r));
         };
         let Law::Contact { mu } = law else {
             let mut x = [argument(i)];
@@ -87,20 +88,22 @@ fn linearized(problem: &Problem, p: &DVector<f64>) -> Linear {
             velocity(i + 2);
             continue;
         }
-        let d = [x_1 / size, x_2 / size];
+        let (d, [g_n, g_1, g_2]) = ([x_1 / size, x_2 / size], [i, i + 1, i + 2].map(row));
+        let turn = radius / size;
         for k in 0..2 {
-            let row = i + 1 + k;
-            F[row] = p[row] - radius * d[k];
-            free.push(row);
-            // ∂x/∂p = 1 − G
-            A.extend((0..m).map(|c| {
-                let dx = |r: usize| f64::from(u8::from(r == c)) - G[(r, c)];
-                let (dx_n, dx_1, dx_2) = (dx(i), dx(i + 1), dx(i + 2));
-                let along = d[0] * dx_1 + d[1] * dx_2;
-                let across = [dx_1, dx_2][k] - along * d[k];
-                let change = -(mu * d[k] * dx_n + radius / size * across);
-                if c == row { change + 1.0 } else { change }
-            }));
+            F[i + 1 + k] = p[i + 1 + k] - radius * d[k];
+            free.push(i + 1 + k);
+            // 1 − ∂(radius d_k)/∂p: by ∂x/∂p = 1 − G, its part of G and that of 1
+            let (start, along) = (A.len(), turn * d[k]);
+            A.extend_from_slice([g_1, g_2][k]);
+            for (c, a) in A[start..].iter_mut().enumerate() {
+                *a = turn * *a + mu * d[k] * g_n[c] - along * (d[0] * g_1[c] + d[1] * g_2[c]);
+            }
+            let block = &mut A[start + i..][..3];
+            block[0] -= mu * d[k];
+            block[1] += along * d[0];
+            block[2] += along * d[1];
+            block[1 + k] += 1.0 - turn;
         }
     }
     let A = DMatrix::from_vec(m, free.len(), A);
