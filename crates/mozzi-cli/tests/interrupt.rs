@@ -1,5 +1,5 @@
-//! Ctrl-C and SIGTERM in long computations, and progress on a terminal only. If the program is too fast to be interrupted, a test
-//! says so.
+//! Ctrl-C and SIGTERM in long computations, and progress on a terminal only. If the program is too fast to be
+//! interrupted, a test says so.
 #![cfg(unix)]
 
 use crate::common;
