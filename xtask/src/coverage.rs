@@ -106,6 +106,8 @@ fn tests(workspace: &Workspace) -> Command {
 /// The programs of the tests.
 fn programs(workspace: &Workspace) -> Result<Vec<PathBuf>, String> {
     let mut cargo = tests(workspace);
+    // build scripts and macros are instrumented, too
+    cargo.env("LLVM_PROFILE_FILE", workspace.path(FOLDER).join("build/%m-%p.profraw"));
     let (succeeded, messages) = command::output(cargo.args(["--no-run", "--message-format", "json"]))?;
     if !succeeded {
         return Err("the tests do not build".into());
