@@ -13,8 +13,8 @@ const HEAD: &str = "\
 
 Milliseconds of a step of 1 ms, one thread, while a model falls with its motors off (the first second), and lies (the
 third): mozzi's program, and MuJoCo's `mj_step` on the same file. MuJoCo's contacts are soft, its cone is convex; mozzi
-solves Coulomb's law to rounding. The URDFs' robots fall from a height at which nothing touches. Gymnasium's models ask MuJoCo for Runge-Kutta, four evaluations a step. Written by
-`cargo xtask bench --contacts`.
+solves Coulomb's law to rounding. The URDFs' robots fall from a height at which nothing touches. Gymnasium's models ask
+MuJoCo for Runge-Kutta, four evaluations a step. Written by `cargo xtask bench --contacts`.
 
 ";
 

@@ -1,6 +1,6 @@
 //! Reads a constraint from an entry of JSON or YAML.
 
-use crate::json::{At, Object, Read};
+use crate::json::{At, Misplaced, Object, Read};
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind};
 use mozzi::{SE3, SO3, Vec3};
 
@@ -32,9 +32,7 @@ pub fn constraint(at: &At) -> Read<Constraint> {
     if !at.value.is_object() {
         return at.wrong("a constraint, such as {\"name\": …, \"kind\": \"point\", \"a\": …, \"b\": …}");
     }
-    if !at.has("kind") {
-        return at.error(format_args!("`kind` is missing in {}", at.name()));
-    }
+    Object::of(&["kind"]).check_required(at).map_err(first)?;
     let kind = at.get("kind").word(&KINDS.map(|(kind, _)| kind))?;
     KINDS.iter().filter(|(known, _)| *known == kind).try_for_each(|(_, object)| check(object, at))?;
     let name = at.get("name").text()?;
@@ -92,5 +90,10 @@ fn anchor(at: &At) -> Read<Anchor> {
 
 /// The first error about the keys of an object.
 pub(super) fn check(object: &Object, at: &At) -> Read<()> {
-    object.check_all(at).map_err(|mut errors| errors.swap_remove(0))
+    object.check_all(at).map_err(first)
+}
+
+/// There is at least one where an object is refused.
+fn first(mut errors: Vec<Misplaced>) -> Misplaced {
+    errors.swap_remove(0)
 }

@@ -62,7 +62,7 @@ impl<'v> At<'v> {
     /// An error for each required key that is missing.
     pub fn missing(&self, required: &[&str]) -> Vec<Misplaced> {
         let error = |key: &&str| self.file.wrong(&self.path, format!("`{key}` is missing in {}", self.name()));
-        required.iter().filter(|key| self.value.get(**key).is_none()).map(error).collect()
+        required.iter().filter(|key| !self.has(key)).map(error).collect()
     }
 
     /// `joints[1].mimic`, or the name of the whole.

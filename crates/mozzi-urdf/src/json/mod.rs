@@ -151,7 +151,7 @@ fn kind(at: &At) -> Read<JointKind> {
     let axis =
         |at: &At| ScrewAxis::from_array(at.vector()?).or_else(|why| at.wrong(format_args!("a screw axis: {why}")));
     let keys = ["A", "ball", "free"];
-    if keys.iter().all(|key| at.value.get(key).is_none()) {
+    if !keys.iter().any(|key| at.has(key)) {
         return at.error(format_args!("`A` is missing in {}; null is the axis of a fixed joint", at.name()));
     }
     let axis = at.get("A").some(axis)?.map(JointKind::Screw);
