@@ -113,7 +113,8 @@ fn note(
         if let [Some(_), Some(_)] = named {
             let span = source.place(node.range());
             let message = "attach: has a `body` and a `frame`, expected at most one of them";
-            cx.findings.error("contradictory_attribute", span, message);
+            let help = "keep the one that you mean: a frame is attached with its pose and all that is in it";
+            cx.findings.add(Finding::error("contradictory_attribute", span, message).help(help));
         }
         let is_world = |(tag, name): &(&str, String)| *tag == "body" && (name.is_empty() || name == "world");
         places.push(Attach {
