@@ -53,7 +53,7 @@ def main():
                 continue
             J, _, which = rows(model, data)
             equalities = [
-                {"name": model.equality(k).name or f"{'connect weld joint'.split()[model.eq_type[k]]}{k}", "J": J[which == k].tolist()}
+                {"name": model.equality(k).name or f"{'connect weld joint tendon'.split()[model.eq_type[k]]}{k}", "J": J[which == k].tolist()}
                 for k in range(model.neq)
                 if model.eq_active0[k]
             ]

@@ -7,7 +7,7 @@ use std::process::Command;
 /// Features that are enabled in addition to the defaults wherever tests are built: the same set for all of them,
 /// because each set needs a build of its own.
 pub const FEATURES: [&str; 2] =
-    ["--features", "mozzi-cli/arrow,mozzi-cli/derive,mozzi-cli/mcap,mozzi-cli/parquet,mozzi-cli/pdf,mozzi-cli/png"];
+    ["--features", "mozzi-cli/arrow,mozzi-cli/mcap,mozzi-cli/parquet,mozzi-cli/pdf,mozzi-cli/png"];
 
 pub struct Workspace {
     pub root: PathBuf,

@@ -232,7 +232,6 @@ impl FileArguments {
     }
 
     /// The text of the file if it is URDF, after the expansion of xacro: its numbers with all their decimals.
-    #[cfg(feature = "derive")]
     pub fn urdf_text(&self) -> Option<String> {
         let is_file = Path::new(&self.model).is_file() || self.model == "-";
         if robot_json::is_json(&self.model) {

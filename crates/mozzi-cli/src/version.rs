@@ -3,9 +3,8 @@
 use mozzi_engine::Shape;
 
 /// The optional parts, and whether this build has them.
-const FEATURES: [(&str, bool); 6] = [
+const FEATURES: [(&str, bool); 5] = [
     ("arrow", cfg!(feature = "arrow")),
-    ("derive", cfg!(feature = "derive")),
     ("mcap", cfg!(feature = "mcap")),
     ("parquet", cfg!(feature = "parquet")),
     ("pdf", cfg!(feature = "pdf")),

@@ -11,7 +11,6 @@ mod compute;
 mod constraints;
 mod convert;
 mod damaged;
-#[cfg(feature = "derive")]
 mod derive;
 mod events;
 mod first;

@@ -64,5 +64,5 @@ pub use many::{
 };
 pub use program::{
     Arguments, Array, Count, Derivative, Function, LONGEST_TEXT, NotAProgram, Output, Product, Program, Step, TooLong,
-    Traced, Value, estimate, is_too_long, pivot_names, record, record_quantity,
+    Traced, Value, estimate, is_too_long, pivot_names, record, record_numbers, record_quantity,
 };

@@ -7,7 +7,7 @@ use crate::cse;
 use crate::derivation::{Derivation, Formula};
 use crate::error::{Error, LONGEST};
 use crate::expression::Expression;
-use crate::kernel::{check_fault, kernel};
+use crate::kernel::{Kernel, check_fault};
 use crate::order::ranks;
 use crate::parameters::{Equal, Meaning, Parameters, Symbols};
 use crate::polynomial::Polynomial;
@@ -83,7 +83,8 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
         inputs.push(angles::wrench());
         names_of_inputs.push("F");
     }
-    let outputs = kernel(&query, &symbolic, &inputs, tip);
+    let kernel = Kernel::new(&query, &symbolic, tip)?;
+    let outputs = kernel.outputs(&inputs);
     check_fault(quantity)?;
     let mut found: Vec<Vec<Polynomial>> = Vec::new();
     for output in &outputs {
@@ -108,7 +109,7 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
             .collect()
     });
     let names = if options.names { cse::name(&mut formulas) } else { Vec::new() };
-    proof::prove(&query, &symbolic, &inputs, tip, &formulas, &names)?;
+    proof::prove(quantity, &kernel, &inputs, &formulas, &names)?;
     let id = |x: &Symbol| x.single_atom().unwrap_or_default();
     let ids = names_of_inputs.into_iter().zip(&inputs).map(|(of, all)| (of, all.iter().map(id).collect())).collect();
     let table = end();

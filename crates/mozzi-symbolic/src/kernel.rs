@@ -1,10 +1,11 @@
-//! A kernel on symbols.
+//! A kernel on symbols: its program, in which the robot's numbers are inputs.
 
 use crate::error::Error;
 use crate::symbol::{Symbol, with_table};
 use crate::table::Fault;
-use mozzi::quantities::{Memory, Query};
-use mozzi::{Environment, FrameId, Model, Scalar, Wrench};
+use mozzi::quantities::Query;
+use mozzi::{FrameId, Model};
+use mozzi_engine::{Program, TooLong, record_numbers};
 
 /// Fails if an operation left the polynomials.
 pub(crate) fn check_fault(quantity: &'static str) -> Result<(), Error> {
@@ -15,21 +16,33 @@ pub(crate) fn check_fault(quantity: &'static str) -> Result<(), Error> {
     }
 }
 
-/// The quantity's outputs on symbols; the last input is the wrench of the tip, if there is one.
-pub(crate) fn kernel(
-    query: &Query,
-    model: &Model<Symbol>,
-    inputs: &[Vec<Symbol>],
-    tip: Option<FrameId>,
-) -> Vec<Vec<Symbol>> {
-    let mut outputs: Vec<Vec<Symbol>> =
-        query.output_lengths(model).map(|length| vec![Symbol::zero(); length]).collect();
-    let mut slices: Vec<&mut [Symbol]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-    let (inputs, wrench) = inputs.split_at(query.declaration().inputs.len());
-    let applied: Vec<(FrameId, Wrench<Symbol>)> =
-        tip.into_iter().zip(wrench).map(|(tip, F)| (tip, Wrench::from_array(std::array::from_fn(|k| F[k])))).collect();
-    let environment = Environment { applied: &applied, ..model.environment() };
-    let inputs: Vec<&[Symbol]> = inputs.iter().map(Vec::as_slice).collect();
-    query.evaluate(model, &inputs, &environment, &mut Memory::new(model), &mut slices);
-    outputs
+/// A quantity of a robot in symbols.
+pub(crate) struct Kernel {
+    program: Program,
+    /// The robot's.
+    numbers: Vec<Symbol>,
+    /// The quantity's inputs; a tip's wrench is one more.
+    inputs: usize,
+}
+
+impl Kernel {
+    pub fn new(query: &Query, model: &Model<Symbol>, tip: Option<FrameId>) -> Result<Self, Error> {
+        let quantity = query.name();
+        let too_long = |TooLong| Error::TooLong { quantity, terms: TooLong::MOST_STEPS };
+        let (program, numbers) = record_numbers(model, *query, tip.as_slice()).map_err(too_long)?;
+        Ok(Kernel { program, numbers, inputs: query.declaration().inputs.len() })
+    }
+
+    /// The outputs; the last input is the wrench of the tip, if there is one.
+    pub fn outputs(&self, inputs: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
+        let (state, wrench) = inputs.split_at(self.inputs);
+        let all = state.iter().chain([&self.numbers]).chain(wrench);
+        self.program.evaluate(&all.map(Vec::as_slice).collect::<Vec<_>>())
+    }
+
+    /// The robot with other numbers.
+    pub fn at(&self, number: impl Fn(Symbol) -> Symbol) -> Self {
+        let numbers = self.numbers.iter().map(|&x| number(x)).collect();
+        Kernel { program: self.program.clone(), numbers, inputs: self.inputs }
+    }
 }

@@ -6,7 +6,7 @@ use crate::derivation::Formula;
 use crate::derive::{Collect, Options, described, legend_of, written};
 use crate::error::Error;
 use crate::expression::Expression;
-use crate::kernel::{check_fault, kernel};
+use crate::kernel::{Kernel, check_fault};
 use crate::letters::below;
 use crate::parameters::Meaning;
 use crate::symbol::{Symbol, end, with_table};
@@ -199,7 +199,7 @@ pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Ste
         writer.add(format!("τ{}", below(j + 1)), format!(r"\tau_{{{}}}", j + 1), Vec::new(), vec![*tau]);
     }
     stacked(&mut writer, &links);
-    let found = kernel(&query, &robot.build()?, &inputs, None).swap_remove(0);
+    let found = Kernel::new(&query, &robot.build()?, None)?.outputs(&inputs).swap_remove(0);
     check_fault(quantity)?;
     if let Some(entry) = (0..tau.len()).find(|&j| tau[j] != found[j]) {
         return Err(Error::NotProven { quantity, entry, what: "the recursion's torque differs".into() });

@@ -89,7 +89,7 @@ pub fn rows<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> R
                     }
                 }
             }
-            ConstraintKind::Joint { joint, source: other, polynomial } => {
+            ConstraintKind::Joint { joints, source: others, polynomial } => {
                 // a joint's own position, and the index and ratio of its source joint's rate
                 let own = |name: &str| {
                     let joint = robot.joints.iter().find(|joint| joint.name == name).expect("a joint");
@@ -99,17 +99,21 @@ pub fn rows<S: Real>(robot: &Description<S>, model: &Model<S>, theta: &[S]) -> R
                     (place.j, ratio, ratio * theta[place.q] + offset)
                 };
                 let mut row = vec![S::zero(); model.n()];
-                let (j, ratio, y) = own(joint);
-                row[j] += ratio;
-                let mut residual = y - polynomial[0];
-                if let Some(name) = other {
-                    let (i, ratio, x) = own(name);
-                    let mut power = S::one(); // x^(k − 1)
-                    for (k, &c) in polynomial.iter().enumerate().skip(1) {
-                        row[i] -= S::from_f64(k as f64) * c * power * ratio;
-                        power = power * x;
-                        residual -= c * power;
+                let mut residual = -polynomial[0];
+                for gear in joints {
+                    let (j, ratio, y) = own(&gear.joint);
+                    row[j] += gear.ratio * ratio;
+                    residual += gear.ratio * y;
+                }
+                let others: Vec<_> = others.iter().map(|gear| (gear.ratio, own(&gear.joint))).collect();
+                let x = others.iter().fold(S::zero(), |sum, &(r, (_, _, x))| sum + r * x);
+                let mut power = S::one(); // x^(k − 1)
+                for (k, &c) in polynomial.iter().enumerate().skip(1) {
+                    for &(r, (i, ratio, _)) in &others {
+                        row[i] -= S::from_f64(k as f64) * c * power * r * ratio;
                     }
+                    power = power * x;
+                    residual -= if others.is_empty() { S::zero() } else { c * power };
                 }
                 A.push(row);
                 phi.push(residual);

@@ -50,7 +50,9 @@ fn as_mujoco(model: &Model, theta: &[f64], one: &Constraint, A: &DMatrix<f64>, t
 
 #[test]
 fn equalities_are_those_of_mujoco() {
-    for (name, scales, count) in [("loops", [1.0, 0.7, 1.0, 1.0].as_slice(), 11), ("feet", &[1.0; 3], 12)] {
+    for (name, scales, count) in
+        [("loops", [1.0, 0.7, 1.0, 1.0].as_slice(), 11), ("feet", &[1.0; 3], 12), ("tendons", &[1.0; 2], 2)]
+    {
         let folder = repository().join("oracles/constraints");
         let loaded = load(folder.join(format!("{name}.xml"))).unwrap();
         assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
@@ -163,7 +165,8 @@ const FILE: &str = r#"{"constraints": [
   {"name": "rod", "kind": "distance", "length": 0.4, "a": {"frame": "b"}, "b": {"frame": "c", "xyz": [1e-3, -2, 0]}},
   {"name": "wheel", "kind": "rolling", "radius": 5e-1, "a": {"frame": null}, "b": {"frame": "c"}},
   {"name": "gear", "kind": "joint", "joint": "k", "source": "j", "polynomial": [0, -2]},
-  {"name": "stop", "kind": "joint", "joint": "k", "polynomial": [0.5]}],
+  {"name": "stop", "kind": "joint", "joint": "k", "polynomial": [0.5]},
+  {"name": "sum", "kind": "joint", "joint": [{"joint": "j", "ratio": 0.1}, {"joint": "k", "ratio": -3}], "polynomial": [1]}],
  "motors": ["j"]}"#;
 
 fn plain() -> Description {
@@ -176,7 +179,7 @@ fn plain() -> Description {
 fn a_file_of_constraints_adds_them() {
     let robot = constraints::parse("c.json", FILE, plain()).unwrap();
     let kinds: Vec<&str> = robot.constraints.iter().map(Constraint::kind_name).collect();
-    assert_eq!(kinds, ["point", "distance", "rolling", "joint", "joint"]);
+    assert_eq!(kinds, ["point", "distance", "rolling", "joint", "joint", "joint"]);
     assert_eq!(robot.motors, Some(vec!["j".to_string()]));
     let ConstraintKind::Frames { a, .. } = &robot.constraints[0].kind else { panic!() };
     assert_eq!((a.T.p, a.T.R), (Vec3([0.3, 0.1, 0.0]), mozzi::SO3::from_rpy(0.0, 0.0, 1.5)));
@@ -208,10 +211,18 @@ fn what_is_wrong_in_a_file_has_its_place() {
         ),
         ("\"rpy\"", "\"rypy\"", "`rypy` is not an entry of constraints[0].a, did you mean `rpy`?"),
         ("1e-3", "\"1e-3\"", "constraints[1].b.xyz[0] is \"1e-3\", expected a number"),
-        ("\"motors\": [\"j\"]", "\"motors\": [\"q\"]", "7:2: robot `loop`: motors: hold `q`, which does not exist"),
+        ("\"motors\": [\"j\"]", "\"motors\": [\"q\"]", "8:2: robot `loop`: motors: hold `q`, which does not exist"),
         ("{\"frame\": \"c\"}}", "{\"frame\": \"q\"}}", "2:3: constraint `foot`: b: there is no link or frame `q`"),
         ("0.4", "-0.4", "3:3: constraint `rod`: length: is -0.4 m"),
         ("[0.5]", "[0.5, 1]", "constraints[4].polynomial is [0.5,1], expected one number"),
+        ("\"ratio\": -3", "\"ratio\": 0", "constraint `sum`: joint: has `k` times 0, expected a finite number but 0"),
+        ("\"joint\": \"k\", \"ratio\"", "\"joint\": \"j\", \"ratio\"", "constraint `sum`: joint: has `j` twice"),
+        ("\"ratio\": -3", "\"rate\": -3", "`rate` is not an entry of constraints[5].joint[1]"),
+        (
+            "\"joint\": \"k\", \"polynomial\"",
+            "\"joint\": [], \"polynomial\"",
+            "is [], expected a joint, or a list of joints",
+        ),
         ("\"gear\"", "\"rod\"", "constraint `rod`"),
         ("{\"frame\": null, \"xyz\"", "{\"xyz\"", "`frame` is missing in constraints[0].a"),
         (

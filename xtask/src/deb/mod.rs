@@ -107,7 +107,7 @@ fn command_line(workspace: &Workspace, stage: &Path, package: &Package) -> Resul
         "--package",
         "mozzi-cli",
         "--features",
-        "arrow,derive",
+        "arrow",
         "--target",
     ]);
     cargo.arg(package.target()).arg("--target-dir").arg(workspace.path(dist::CARGO));

@@ -73,7 +73,7 @@ pub fn install(workspace: &Workspace, version: &str) -> Outcome {
         let mut cargo = packages::cargo(
             workspace,
             &folder,
-            &["install", "mozzi-cli", "--version", version, "--features", "arrow,derive", "--config"],
+            &["install", "mozzi-cli", "--version", version, "--features", "arrow", "--config"],
         );
         command::run(cargo.arg(".cargo/config.toml").args(["--locked", "--root"]).arg(&folder))?;
         let mozzi = folder.join("bin/mozzi");

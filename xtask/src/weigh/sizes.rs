@@ -36,15 +36,7 @@ fn size(file: &Path) -> Result<u64, String> {
 
 /// As the Debian package has it.
 fn program(workspace: &Workspace) -> Result<u64, String> {
-    command::run(workspace.cargo(&[
-        "build",
-        "--profile",
-        "dist",
-        "--package",
-        "mozzi-cli",
-        "--features",
-        "arrow,derive",
-    ]))?;
+    command::run(workspace.cargo(&["build", "--profile", "dist", "--package", "mozzi-cli", "--features", "arrow"]))?;
     size(&workspace.target().join(format!("dist/mozzi{}", std::env::consts::EXE_SUFFIX)))
 }
 

@@ -8,7 +8,6 @@ pub mod compare;
 pub mod completions;
 pub mod compute;
 pub mod convert;
-#[cfg_attr(not(feature = "derive"), path = "derive_absent.rs")]
 pub mod derive;
 pub mod excite;
 pub mod explain;

@@ -8,7 +8,8 @@ use crate::program::robot_number::RobotNumber;
 use crate::program::too_long::TooLong;
 use crate::program::{Derivative, Program, Traced};
 use mozzi::quantities::{ForwardDynamics, ForwardDynamicsParameterVjp, ForwardDynamicsVjp, Memory, Of, Query};
-use mozzi::{Environment, Error, FrameId, Model, Twist, Vec3, Wrench};
+use mozzi::{Environment, Error, FrameId, Model, Scalar, Twist, Vec3, Wrench};
+use std::cell::{Cell, RefCell};
 
 /// Quantities kept as arguments of the program instead of constants: further inputs after the state, in this order. By
 /// default there are none: all numbers of the robot are constants, its base is at rest, no wrenches are applied, and
@@ -33,10 +34,9 @@ pub struct Arguments<'a> {
 }
 
 impl Arguments<'_> {
-    /// Names and lengths.
-    pub(crate) fn inputs(&self, model: &Model) -> Vec<(String, usize)> {
+    /// Names and lengths of those that are not the robot's own numbers.
+    fn inputs<C: Scalar>(&self, model: &Model<C>) -> Vec<(String, usize)> {
         let plain = [
-            ("parameters", self.parameters, model.parameter_count()),
             ("gravity", self.gravity, 3),
             ("base_twist", self.base_twist, 6),
             ("base_acceleration", self.base_acceleration, 6),
@@ -48,7 +48,7 @@ impl Arguments<'_> {
     }
 
     /// The input of this frame's wrench.
-    pub(crate) fn wrench_name(&self, model: &Model, frame: FrameId) -> String {
+    pub(crate) fn wrench_name<C: Scalar>(&self, model: &Model<C>, frame: FrameId) -> String {
         match self.wrenches.len() {
             1 => "wrench".to_string(),
             _ => format!("wrench_{}", model.frame_name(frame)),
@@ -88,23 +88,70 @@ pub fn record_quantity<'q>(model: &Model, query: impl Into<Query<'q>>, arguments
 
 /// The program of a query, recorded from its kernel.
 fn recorded(model: &Model, query: Query, arguments: Arguments) -> Result<Program, TooLong> {
-    let declaration = query.declaration();
-    let reduced = declaration.is_of_forces.then(|| model.reduced());
+    let reduced = query.declaration().is_of_forces.then(|| model.reduced());
     let model = reduced.as_ref().unwrap_or(model);
+    let own = arguments.parameters.then(|| ("parameters", model.parameter_count()));
+    let program = record_kernel(model, query, arguments, own, |parameters| match parameters {
+        Some(parameters) => model.with_parameters(parameters),
+        None => model.map(RobotNumber::Constant),
+    })?;
+    Ok(needed::ordered(program, query, model.n()))
+}
+
+/// The program of a quantity of a robot whose numbers are of any kind, such as exact or symbolic ones, and those
+/// numbers: its input `numbers`, between the quantity's inputs and the wrenches. 0 and ±1 are constants of the program.
+/// The program's value in that kind of number is the kernel's. See [`record_quantity`].
+///
+/// # Errors
+/// [`TooLong`].
+pub fn record_numbers<C: Scalar + PartialEq>(
+    model: &Model<C>,
+    query: Query,
+    wrenches: &[FrameId],
+) -> Result<(Program, Vec<C>), TooLong> {
+    let constants = [0.0, 1.0, -1.0].map(|x| (C::from_f64(x), x));
+    let constant = |x: C| constants.iter().find(|(constant, _)| *constant == x).map(|(_, x)| *x);
+    let found = RefCell::new(Vec::new());
+    model.map(|x| match constant(x) {
+        Some(_) => {}
+        None => found.borrow_mut().push(x),
+    });
+    let (found, next) = (found.into_inner(), Cell::new(0));
+    let own = Some(("numbers", found.len()));
+    let arguments = Arguments { wrenches, ..Arguments::default() };
+    let program = record_kernel(model, query, arguments, own, |numbers| {
+        model.map(|x| match constant(x) {
+            Some(x) => RobotNumber::Constant(x),
+            None => numbers.unwrap_or_default()[next.replace(next.get() + 1)],
+        })
+    })?;
+    Ok((program, found))
+}
+
+/// The program of a query's kernel on a robot, which is made of an input of its `own` numbers.
+fn record_kernel<C: Scalar>(
+    model: &Model<C>,
+    query: Query,
+    arguments: Arguments,
+    own: Option<(&str, usize)>,
+    robot: impl FnOnce(Option<&[RobotNumber]>) -> Model<RobotNumber>,
+) -> Result<Program, TooLong> {
+    let declaration = query.declaration();
     let further = arguments.inputs(model);
+    let further = further.iter().map(|(name, length)| (name.as_str(), *length));
     let state = declaration.inputs.iter().map(|input| input.name).zip(query.input_lengths(model));
-    let inputs: Vec<(&str, usize)> =
-        state.chain(further.iter().map(|(name, length)| (name.as_str(), *length))).collect();
-    let program = record(query.name(), &inputs, |arrays| {
+    let inputs: Vec<(&str, usize)> = state.chain(own).chain(further).collect();
+    record(query.name(), &inputs, |arrays| {
         let (state, rest) = arrays.split_at(declaration.inputs.len());
         let state: Vec<&[Traced]> = state.iter().map(Vec::as_slice).collect();
         let mut rest = rest.iter().map(Vec::as_slice);
         let mut next = |is_argument: bool| if is_argument { rest.next() } else { None };
-        let parameters = next(arguments.parameters);
+        let own = next(own.is_some()).map(|own| own.iter().map(|&x| RobotNumber::Recorded(x)).collect::<Vec<_>>());
+        let robot = robot(own.as_deref());
         fn fixed<const K: usize>(numbers: &[Traced]) -> [Traced; K] {
             std::array::from_fn(|k| numbers[k])
         }
-        let gravity = next(arguments.gravity).map_or(model.gravity().map(Traced::from), |g| Vec3(fixed(g)));
+        let gravity = next(arguments.gravity).map_or(robot.gravity().map(Traced::from), |g| Vec3(fixed(g)));
         let twist = |x: Option<&[Traced]>| x.map_or(Twist::zero(), |x| Twist::from_array(fixed(x)));
         let base_twist = twist(next(arguments.base_twist));
         let base_acceleration = twist(next(arguments.base_acceleration));
@@ -113,25 +160,17 @@ fn recorded(model: &Model, query: Query, arguments: Arguments) -> Result<Program
         let applied: Vec<_> = wrenches.map(|(frame, F)| (frame, Wrench::from_array(fixed(F)))).collect();
         let environment = Environment { gravity, base_twist, base_acceleration, applied: &applied };
 
-        let mut memory = Memory::new(model);
+        let mut memory = Memory::new(&robot);
         if let Some(point) = point {
             memory = memory.with_point(point);
         }
         let zero = Traced::from(0.0);
-        let mut outputs: Vec<Vec<Traced>> = query.output_lengths(model).map(|length| vec![zero; length]).collect();
+        let mut outputs: Vec<Vec<Traced>> = query.output_lengths(&robot).map(|length| vec![zero; length]).collect();
         let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        let model = match parameters {
-            Some(parameters) => {
-                let recorded: Vec<RobotNumber> = parameters.iter().map(|&x| RobotNumber::Recorded(x)).collect();
-                model.with_parameters(&recorded)
-            }
-            None => model.map(RobotNumber::Constant),
-        };
-        query.evaluate(&model, &state, &environment, &mut memory, &mut slices);
+        query.evaluate(&robot, &state, &environment, &mut memory, &mut slices);
         let names = declaration.outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
         names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
-    })?;
-    Ok(needed::ordered(program, query, model.n()))
+    })
 }
 
 /// The outputs of a program after the quantity's own: the pivots that it divides by.

@@ -14,7 +14,7 @@ mod text;
 mod too_long;
 mod traced;
 
-pub use arguments::{Arguments, pivot_names, record_quantity};
+pub use arguments::{Arguments, pivot_names, record_numbers, record_quantity};
 pub use count::Count;
 pub use derivative::{Derivative, Product};
 pub use estimate::{LONGEST_TEXT, estimate, is_too_long};

@@ -150,8 +150,8 @@ fn tidy(case: &mut Case) {
         |anchor: &mozzi::model::description::Anchor| anchor.frame.as_ref().is_none_or(|name| names.contains(name));
     robot.constraints.retain(|constraint| match &constraint.kind {
         mozzi::model::description::ConstraintKind::Frames { a, b, .. } => has(a) && has(b),
-        mozzi::model::description::ConstraintKind::Joint { joint, source, .. } => {
-            of_one_axis.contains(joint) && source.as_ref().is_none_or(|source| of_one_axis.contains(source))
+        mozzi::model::description::ConstraintKind::Joint { joints, source, .. } => {
+            joints.iter().chain(source).all(|gear| of_one_axis.contains(&gear.joint))
         }
     });
     case.applied.retain(|(name, _)| names.contains(name));

@@ -1,7 +1,7 @@
 //! Reads a constraint from an entry of JSON or YAML.
 
-use crate::json::{At, Misplaced, Object, Read};
-use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind};
+use crate::json::{At, GEAR, Misplaced, Object, Read, gear};
+use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Gear};
 use mozzi::{SE3, SO3, Vec3};
 
 const FRAMES: [&str; 4] = ["name", "kind", "a", "b"];
@@ -37,9 +37,9 @@ pub fn constraint(at: &At) -> Read<Constraint> {
     KINDS.iter().filter(|(known, _)| *known == kind).try_for_each(|(_, object)| check(object, at))?;
     let name = at.get("name").text()?;
     if kind == "joint" {
-        let source = at.get("source").some(At::text)?;
+        let source = at.get("source").some(sum)?.unwrap_or_default();
         let coefficients = at.get("polynomial");
-        let most = if source.is_some() { 5 } else { 1 };
+        let most = if source.is_empty() { 1 } else { 5 };
         let given = coefficients.numbers()?;
         // written files have five coefficients; without a source all but the first are zero
         if given.is_empty() || given.len() > 5 || given.iter().skip(most).any(|c| *c != 0.0) {
@@ -53,7 +53,7 @@ pub fn constraint(at: &At) -> Read<Constraint> {
         polynomial[..given.len()].copy_from_slice(&given);
         return Ok(Constraint {
             name,
-            kind: ConstraintKind::Joint { joint: at.get("joint").text()?, source, polynomial },
+            kind: ConstraintKind::Joint { joints: sum(&at.get("joint"))?, source, polynomial },
         });
     }
     let length = length_key(kind).map(|key| at.get(key).number()).transpose()?.unwrap_or_default();
@@ -65,6 +65,18 @@ pub fn constraint(at: &At) -> Read<Constraint> {
         _ => Closure::Rolling(length),
     };
     Ok(Constraint::new(name, anchor(&at.get("a"))?, anchor(&at.get("b"))?, closure))
+}
+
+/// A joint, or several with their ratios.
+fn sum(at: &At) -> Read<Vec<Gear>> {
+    match at.list() {
+        Err(_) if at.value.is_string() => Ok(vec![Gear { joint: at.text()?, ratio: 1.0 }]),
+        Ok(list) if !list.is_empty() => {
+            list.iter().try_for_each(|entry| check(&GEAR, entry))?;
+            list.iter().map(gear).collect()
+        }
+        _ => at.wrong("a joint, or a list of joints such as [{\"joint\": \"elbow\", \"ratio\": 0.5}]"),
+    }
 }
 
 fn anchor(at: &At) -> Read<Anchor> {

@@ -16,7 +16,7 @@
 //! - An anchor is a `frame` (a link or frame of the robot; null is {s}) and its configuration in it, the identity by
 //!   default: `xyz` (m) and `rpy` (roll, pitch, yaw, rad), or the 4 × 4 matrix `T`.
 //! - A `joint` has up to five coefficients, θ_joint = Σ c_k θ_sourceᵏ; without `source`, one: the position at which the
-//!   joint is held.
+//!   joint is held. For a sum of several joints, `joint` or `source` is a list: `[{"joint": "j2", "ratio": 0.5}, …]`.
 //! - `motors` names the joints that have motors; without it, all have.
 //!
 //! # robot.yaml
@@ -36,7 +36,7 @@ pub(crate) use entry::constraint;
 pub use file::ConstraintsError;
 
 use mozzi::Description;
-use mozzi::model::description::{Anchor, Constraint, ConstraintKind};
+use mozzi::model::description::{Anchor, Constraint, ConstraintKind, Gear};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -72,8 +72,8 @@ fn value(constraint: &Constraint) -> Value {
     let kind = constraint.kind_name();
     let anchor = |anchor: &Anchor| json!({ "frame": anchor.frame, "T": anchor.T.to_matrix() });
     match &constraint.kind {
-        ConstraintKind::Joint { joint, source, polynomial } => json!({
-            "name": constraint.name, "kind": kind, "joint": joint, "source": source, "polynomial": polynomial,
+        ConstraintKind::Joint { joints, source, polynomial } => json!({
+            "name": constraint.name, "kind": kind, "joint": sum(joints), "source": sum(source), "polynomial": polynomial,
         }),
         ConstraintKind::Frames { a, b, closure } => {
             let mut entry = json!({ "name": constraint.name, "kind": kind, "a": anchor(a), "b": anchor(b) });
@@ -82,5 +82,14 @@ fn value(constraint: &Constraint) -> Value {
             }
             entry
         }
+    }
+}
+
+/// A joint's name; several are a list with their ratios.
+fn sum(gears: &[Gear]) -> Value {
+    match gears {
+        [] => Value::Null,
+        [Gear { joint, ratio: 1.0 }] => json!(joint),
+        _ => crate::json::gears(gears),
     }
 }

@@ -48,11 +48,10 @@ const JOINT: Object = Object {
     children: &[("mimic", object(&["joint", "ratio", "offset"]))],
 };
 
-const ROTOR: Object = Object {
-    required: &["name", "armature", "gears"],
-    optional: &[],
-    children: &[("gears", object(&["joint", "ratio"]))],
-};
+const ROTOR: Object = Object { required: &["name", "armature", "gears"], optional: &[], children: &[("gears", GEAR)] };
+
+/// A joint and its ratio.
+pub(crate) const GEAR: Object = object(&["joint", "ratio"]);
 
 const STATE: Object = Object {
     required: &["name", "joints"],

@@ -10,6 +10,7 @@ mod value;
 
 pub use entry::{At, Read};
 pub use file::{File, Misplaced, Step, unknown_key};
+pub(crate) use keys::GEAR;
 pub use keys::Object;
 pub(crate) use position::Place;
 pub use value::{pose, print, rows, screws, vector};
@@ -66,7 +67,7 @@ pub fn to_value(robot: &Description) -> Value {
         "joints": robot.joints.iter().map(joint).collect::<Value>(),
         "rotors": robot.rotors.iter().map(|rotor| json!({
             "name": rotor.name, "armature": rotor.armature,
-            "gears": rotor.gears.iter().map(|gear| json!({ "joint": gear.joint, "ratio": gear.ratio })).collect::<Value>(),
+            "gears": gears(&rotor.gears),
         })).collect::<Value>(),
         "frames": robot.frames.iter().map(|frame| json!({
             "name": frame.name, "link": frame.link, "T": pose(frame.T),
@@ -76,6 +77,11 @@ pub fn to_value(robot: &Description) -> Value {
         "states": robot.states.iter().map(states::write).collect::<Value>(),
         "start": robot.start,
     })
+}
+
+/// Joints and their ratios.
+pub(crate) fn gears(gears: &[Gear]) -> Value {
+    gears.iter().map(|gear| json!({ "joint": gear.joint, "ratio": gear.ratio })).collect()
 }
 
 /// The description of a robot in a file.
@@ -129,9 +135,13 @@ fn free_joint(at: &At, base: Base) -> Read<FreeJoint> {
 }
 
 fn rotor(at: &At) -> Read<Rotor> {
-    let gear = |at: &At| Ok(Gear { joint: at.get("joint").text()?, ratio: at.get("ratio").number()? });
     let gears = at.get("gears").list()?.iter().map(gear).collect::<Read<_>>()?;
     Ok(Rotor { name: at.get("name").text()?, armature: at.get("armature").number()?, gears })
+}
+
+/// A joint and its ratio.
+pub(crate) fn gear(at: &At) -> Read<Gear> {
+    Ok(Gear { joint: at.get("joint").text()?, ratio: at.get("ratio").number()? })
 }
 
 fn frame(at: &At) -> Read<NamedFrame> {

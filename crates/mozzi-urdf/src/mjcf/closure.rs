@@ -1,4 +1,4 @@
-//! Elements outside the tree of bodies that act on it: equalities, tendons, actuators, flexible bodies, in this order.
+//! Elements outside the tree of bodies that act on it: tendons, then equalities and flexible bodies, then actuators.
 
 use super::Model;
 use super::equality::Named;
@@ -23,12 +23,13 @@ impl<'a> Model<'a> {
                 _ => continue,
             };
         }
-        let all = |is_first: bool| {
-            // actuators drive tendons, so tendons are read first
-            let sections = sections.iter().filter(move |section| (section.name() != "actuator") == is_first);
-            sections.flat_map(|section| section.elements().map(move |child| (section, child)))
+        // equalities tie tendons, and actuators drive them
+        let order = |section: &&Element| {
+            ["tendon", "", "actuator"].iter().position(|name| section.name() == *name).unwrap_or(1)
         };
-        for (section, child) in all(true).chain(all(false)) {
+        let mut ordered: Vec<&Element> = sections.iter().collect();
+        ordered.sort_by_key(order);
+        for (section, child) in ordered.into_iter().flat_map(|s| s.elements().map(move |child| (s, child))) {
             if cx.findings.is_full() {
                 return;
             }

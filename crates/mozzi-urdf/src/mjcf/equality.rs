@@ -1,5 +1,5 @@
 //! `<equality>`: an affine coupling of two joints is a mimic joint; `connect`, `weld` and the other couplings of joints
-//! are constraints; those of tendons and flexible bodies are refused by name.
+//! and of fixed tendons are constraints; those of flexible bodies are refused by name.
 
 use super::Model;
 use super::attributes::Item;
@@ -13,7 +13,7 @@ use crate::report::spelling::did_you_mean;
 use crate::text::context::Context;
 use crate::text::element::Element;
 use crate::urdf::vocabulary::shown;
-use mozzi::model::description::{Anchor, Closure, ConstraintKind, Mimic};
+use mozzi::model::description::{Anchor, Closure, ConstraintKind, Gear, Mimic};
 use mozzi::{SE3, Vec3};
 use std::collections::BTreeMap;
 
@@ -71,9 +71,12 @@ impl<'a> Model<'a> {
                 item.element.check_attributes(&vocabulary::WELD, cx);
                 self.weld(&item, named, cx);
             }
+            "tendon" => {
+                item.element.check_attributes(&vocabulary::TENDON_COUPLING, cx);
+                self.tendon_coupling(&item, named.joints, cx);
+            }
             _ => {
-                let what = if name == "tendon" { "ties tendons" } else { "ties a flexible body" };
-                let message = format!("{}: {what}, which mozzi does not compute", item.element.subject);
+                let message = format!("{}: ties a flexible body, which mozzi does not compute", item.element.subject);
                 let help = "remove it, or set active=\"false\", if you want to compute the robot without it";
                 cx.findings.add(Finding::error("unsupported_equality", item.element.span(), message).help(help));
             }
@@ -122,13 +125,15 @@ impl<'a> Model<'a> {
 
     fn add(&mut self, item: &Item<'a>, links: [Option<usize>; 2], kind: ConstraintKind, cx: &mut Context) {
         let mut place = Place::new(item.element.span());
-        for name in ["name", "joint", "source", "polynomial"] {
-            let written = match name {
-                "joint" => "joint1",
-                "source" => "joint2",
-                "polynomial" => "polycoef",
-                name => name,
-            };
+        let written = [
+            ("name", "name"),
+            ("joint", "joint1"),
+            ("joint", "tendon1"),
+            ("source", "joint2"),
+            ("source", "tendon2"),
+            ("polynomial", "polycoef"),
+        ];
+        for (name, written) in written {
             if let Some(value) = item.value(written) {
                 place.set(name, value.span);
             }
@@ -140,10 +145,7 @@ impl<'a> Model<'a> {
 
     /// y − y₀ = Σ a_k (x − x₀)ᵏ: if linear, y is a mimic joint of x, unless it is one already; else a constraint.
     fn coupling(&mut self, item: &Item<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
-        let mut polynomial = item.overlaid::<5>("polycoef", cx);
-        if !item.has("polycoef") {
-            polynomial = [0.0, 1.0, 0.0, 0.0, 0.0];
-        }
+        let polynomial = polynomial(item, cx);
         let mut joint = |attribute| find(&item.element, attribute, "joint", "unknown_joint", names, cx);
         let y = joint("joint1");
         let x = if item.element.attribute("joint2").is_some() { Some(joint("joint2")) } else { None };
@@ -160,14 +162,55 @@ impl<'a> Model<'a> {
             joint.joint.mimic = Some(Mimic { joint: source, ratio: a1, offset });
             return;
         }
-        let mut polynomial = match source {
-            Some(x) => about_zero(polynomial, self.tree.joints[x].reference),
-            None => [polynomial[0], 0.0, 0.0, 0.0, 0.0],
-        };
-        polynomial[0] += y0;
-        let kind = ConstraintKind::Joint { joint: name(y), source: source.map(name), polynomial };
-        self.add(item, [None, None], kind, cx);
+        let one = |joint| Gear { joint: name(joint), ratio: 1.0 };
+        self.couple(item, [vec![one(y)], source.map(one).into_iter().collect()], polynomial, names, cx);
     }
+
+    /// l₁ − l₁₀ = Σ a_k (l₂ − l₂₀)ᵏ of fixed tendons, with l = Σ coef θ.
+    fn tendon_coupling(&mut self, item: &Item<'a>, joints: &BTreeMap<String, usize>, cx: &mut Context) {
+        let tendons = self.tree.rotors.iter().enumerate();
+        let tendons = tendons.filter_map(|(i, tendon)| Some((tendon.name.given.clone()?, i))).collect();
+        let mut tendon = |attribute| find(&item.element, attribute, "tendon", "unknown_joint", &tendons, cx);
+        let one = tendon("tendon1");
+        let two = if item.element.attribute("tendon2").is_some() { Some(tendon("tendon2")) } else { None };
+        let (Some(one), Some(two)) = (one, two.map_or(Some(None), |two| two.map(Some))) else { return };
+        let mut sum = |(attribute, tendon): (&str, usize)| {
+            let tendon = &mut self.tree.rotors[tendon];
+            tendon.is_tied = true;
+            if !tendon.is_fixed {
+                let message = format!("{attribute}: is a spatial tendon, which mozzi does not compute");
+                let help = "remove the equality, or set active=\"false\", if you want to compute the robot without it";
+                cx.findings.add(item.error("unsupported_equality", attribute, &message).help(help));
+            }
+            let gears: Vec<Gear> = tendon.gears.iter().filter(|gear| gear.ratio != 0.0).cloned().collect();
+            (!gears.is_empty()).then_some(gears) // else reported
+        };
+        let (one, two) = (sum(("tendon1", one)), two.map(|two| sum(("tendon2", two))));
+        if let (Some(one), Some(two)) = (one, two.map_or(Some(Vec::new()), |two| two)) {
+            let polynomial = polynomial(item, cx);
+            self.couple(item, [one, two], polynomial, joints, cx);
+        }
+    }
+
+    /// y − y₀ = Σ a_k (x − x₀)ᵏ for sums of joints' positions, which are y₀ and x₀ in the file's own configuration.
+    fn couple(
+        &mut self,
+        item: &Item<'a>,
+        [joints, source]: [Vec<Gear>; 2],
+        a: [f64; 5],
+        names: &BTreeMap<String, usize>,
+        cx: &mut Context,
+    ) {
+        let of = |gear: &Gear| names.get(&gear.joint).map_or(0.0, |&i| gear.ratio * self.tree.joints[i].reference);
+        let [y0, x0] = [&joints, &source].map(|sum| sum.iter().map(of).sum::<f64>());
+        let mut polynomial = if source.is_empty() { [a[0], 0.0, 0.0, 0.0, 0.0] } else { about_zero(a, x0) };
+        polynomial[0] += y0;
+        self.add(item, [None, None], ConstraintKind::Joint { joints, source, polynomial }, cx);
+    }
+}
+
+fn polynomial(item: &Item, cx: &mut Context) -> [f64; 5] {
+    if item.has("polycoef") { item.overlaid("polycoef", cx) } else { [0.0, 1.0, 0.0, 0.0, 0.0] }
 }
 
 /// The two ends of a tie.

@@ -145,8 +145,8 @@ pub(crate) const CODES: [Entry; 43] = [
          of the tree.",
         "let MuJoCo expand or remove it, and save the model from there"),
     ("unsupported_equality",
-        "An equality of tendons or flexible bodies. Equalities of joints and bodies are computed; ignoring others \
-         would give wrong results, so the file is refused.",
+        "An equality of spatial tendons or flexible bodies. Equalities of joints, bodies and fixed tendons are computed; \
+         ignoring others would give wrong results, so the file is refused.",
         "remove it, or set active=\"false\", if you want to compute the robot without it"),
     ("unsupported_joint",
         "A free joint is inside the tree, or its body has other joints, too. MuJoCo refuses it, too.",

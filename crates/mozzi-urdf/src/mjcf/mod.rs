@@ -9,8 +9,8 @@
 //! hinges, slides and balls, several in a body, with `ref`, `range`, `armature`, `damping`, `frictionloss`,
 //! `stiffness`, `springref` and `springdamper`; inertias, given or computed from geoms, also from meshes; default
 //! classes; includes; compiler settings that affect the tree; gravity; keyframes; a linear equality of two joints, as a
-//! mimic joint; other equalities of joints, `connect` and `weld`, as constraints; the armature of actuators, and of
-//! fixed tendons, as rotors that several joints turn.
+//! mimic joint; other equalities of joints and of fixed tendons, `connect` and `weld`, as constraints; the armature of
+//! actuators, and of fixed tendons, as rotors that several joints turn.
 //!
 //! - The base is the link `world`. Links are bodies with the frames of MuJoCo, sites are named frames, positions are
 //!   MuJoCo's `qpos`, with `ref`. Between two joints of one body there is a massless link `body:joint`.
@@ -32,8 +32,8 @@
 //!   Numbers of mimic joints are checked against their source joints', and not kept.
 //!
 //! # Unsupported elements
-//! - Refused by name: equalities of tendons and flexible bodies, tendons with forces, spatial tendons with an armature,
-//!   flexible bodies, `composite`, meshes whose inertia is needed and unknown.
+//! - Refused by name: equalities of spatial tendons and flexible bodies, tendons with forces, spatial tendons with an
+//!   armature, flexible bodies, `composite`, meshes whose inertia is needed and unknown.
 //! - Loaded with a warning that names the force: nonlinear springs and damping, gravity compensation, fluids.
 //!   Simulations may add the forces of actuators and gravity compensation: [`Actuated`].
 //! - Loaded with a warning, without loss for the dynamics: limits of tendons, reversed limits, an `<inertial>` without

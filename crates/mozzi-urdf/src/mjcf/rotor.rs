@@ -53,6 +53,7 @@ impl<'a> Model<'a> {
             is_fixed,
             is_refused: force.is_some(),
             is_limited,
+            is_tied: false,
             place,
         });
     }
@@ -119,7 +120,7 @@ impl<'a> Model<'a> {
     pub fn settle_rotors(&mut self, names: &BTreeMap<String, usize>) {
         for rotor in std::mem::take(&mut self.tree.rotors) {
             match *rotor.gears.as_slice() {
-                _ if rotor.is_refused || rotor.armature == 0.0 && rotor.is_limited => {}
+                _ if rotor.is_refused || rotor.armature == 0.0 && (rotor.is_limited || rotor.is_tied) => {}
                 _ if rotor.armature == 0.0 => {
                     let help = "without stiffness, damping, friction, armature and limits it has no effect";
                     self.ignored.list("tendon", rotor.place.span(""), "mujoco", help);

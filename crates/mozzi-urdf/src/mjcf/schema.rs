@@ -23,6 +23,7 @@ fn vocabulary(path: &str) -> Option<&'static Vocabulary> {
         "mujoco/body/geom" | "mujoco/default/geom" => &vocabulary::GEOM,
         "mujoco/body/site" | "mujoco/default/site" => &vocabulary::SITE,
         "mujoco/equality/joint" | "mujoco/default/equality" => &vocabulary::COUPLING,
+        "mujoco/equality/tendon" => &vocabulary::TENDON_COUPLING,
         "mujoco/equality/connect" => &vocabulary::CONNECT,
         "mujoco/equality/weld" => &vocabulary::WELD,
         "mujoco/keyframe" => &vocabulary::KEYFRAME,
@@ -87,6 +88,13 @@ fn model(path: &str, attribute: &str) -> String {
             "<joint name='a'/><joint name='b'/><geom size='1'/>",
             &format!("<equality><joint joint1='a' joint2='b' {attribute}/></equality>"),
         ),
+        "mujoco/equality/tendon" => body(
+            "<joint name='a'/><geom size='1'/>",
+            &format!(
+                "<tendon><fixed name='t'><joint joint='a' coef='1'/></fixed></tendon>\
+                 <equality><tendon tendon1='t' {attribute}/></equality>"
+            ),
+        ),
         "mujoco/equality/connect" | "mujoco/equality/weld" => {
             let tag = path.rsplit('/').next().unwrap_or_default();
             let rest = if attribute.starts_with("anchor") { "" } else { "anchor='1 0 0'" };
@@ -101,7 +109,7 @@ fn model(path: &str, attribute: &str) -> String {
 }
 
 /// Attributes whose values are names.
-const NAMES: [&str; 13] = [
+const NAMES: [&str; 15] = [
     "name",
     "class",
     "childclass",
@@ -111,6 +119,8 @@ const NAMES: [&str; 13] = [
     "joint2",
     "site1",
     "site2",
+    "tendon1",
+    "tendon2",
     "model",
     "mesh",
     "assetdir",

@@ -304,6 +304,11 @@ pub(crate) const COUPLING: Vocabulary = Vocabulary {
     listed: &["solimp", "solref"],
     ..NOTHING
 };
+pub(crate) const TENDON_COUPLING: Vocabulary = Vocabulary {
+    attributes: &["name", "class", "active", "tendon1", "tendon2", "polycoef"],
+    listed: &["solimp", "solref"],
+    ..NOTHING
+};
 pub(crate) const CONNECT: Vocabulary = Vocabulary {
     attributes: &["name", "class", "active", "body1", "body2", "anchor", "site1", "site2"],
     listed: &["solimp", "solref"],

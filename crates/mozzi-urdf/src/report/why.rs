@@ -290,8 +290,8 @@ const WHY: [(&str, &str); 116] = [
     ("unsupported_element",
         "Without these bodies their mass is missing: the joints that carry them would feel less weight."),
     ("unsupported_equality",
-        "Without it the joints of the tendon move independently, one degree of freedom too many, and the tendon's \
-         force is missing from the torques."),
+        "Without it the joints that the tendon spans move independently, one degree of freedom too many, and the \
+         tendon's force is missing from the torques."),
     ("unsupported_joint",
         "A program that does not know the type refuses the file or makes the joint fixed: three degrees of freedom \
          are lost."),

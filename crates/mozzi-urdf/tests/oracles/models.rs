@@ -25,7 +25,7 @@ const WHY: [(&str, &str); 8] = [
         "unsupported_attribute",
         "`springdamper` chooses a spring by the mass matrix, which is singular without the inertias of meshes, which mozzi does not read.",
     ),
-    ("unsupported_equality", "Tendons are coupled, by forces that mozzi does not compute."),
+    ("unsupported_equality", "Spatial tendons are coupled, by forces that mozzi does not compute."),
     ("unsupported_joint", "A free joint inside the tree, which MuJoCo refuses, too."),
     ("unsupported_tendon", "A tendon with stiffness or damping puts forces on several joints at once."),
     (

@@ -16,8 +16,8 @@ use crate::workspace::Workspace;
 ///
 /// φ is the position of the origin of {b} in {a}, preceded by 2 sin(α/2) times the axis of the rotation by α from {a}
 /// to {b}; for a hinge −z_y and z_x of the z-axis of {b}; for a distance d (pᵀp − d²)/2d; for a wheel the height of its
-/// lowest point, after two zeros; for a joint θ_j − Σ c_k θ_iᵏ. If A is not the derivative of φ (angles), it is the
-/// derivative at φ = 0.
+/// lowest point, after two zeros; for joints Σ r_j θ_j − Σ c_k (Σ r_i θ_i)ᵏ. If A is not the derivative of φ (angles),
+/// it is the derivative at φ = 0.
 ///
 /// Empty outputs are not computed. Cost O(Σ depth of the anchors), no allocation.
 ///
@@ -61,8 +61,8 @@ pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
         let dA_dtheta = dA_dtheta.get_mut(rows.clone()).unwrap_or_default();
         let phi = phi.get_mut(rows).unwrap_or_default();
         match &tie.kind {
-            TieKind::Joint { joint, source, polynomial } => {
-                joint_row(theta, dtheta, (joint, source.as_ref(), polynomial), A, dA_dtheta, phi);
+            TieKind::Joint { joints, source, polynomial } => {
+                joint_row(theta, dtheta, (joints, source, polynomial), A, dA_dtheta, phi);
             }
             TieKind::Frames { a, b, closure } => {
                 frame_rows(model, base, dtheta, ([a, b], closure), workspace, A, dA_dtheta, phi);
@@ -72,34 +72,40 @@ pub(super) fn rows<S: Scalar + From<C>, C: Scalar>(
 }
 }
 
-/// The row of θ_j − Σ c_k θ_iᵏ = 0.
+/// The row of y − f(x) = 0, with y = Σ r_j θ_j, x = Σ r_i θ_i, f(x) = Σ c_k xᵏ.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn joint_row<S: Scalar + From<C>, C: Scalar>(
     theta: &[S],
     dtheta: &[S],
-    (joint, source, polynomial): (&Own<C>, Option<&Own<C>>, &[C; 5]),
+    (joints, source, polynomial): (&[Own<C>], &[Own<C>], &[C; 5]),
     A: &mut [S],
     dA_dtheta: &mut [S],
     phi: &mut [S],
 ) {
     let [c0, c1, c2, c3, c4] = polynomial.map(S::from);
-    let (x, dx) = match source {
-        Some(own) => (own.position(theta), S::from(own.ratio) * dtheta[own.j]),
-        None => (S::zero(), S::zero()),
-    };
+    let (mut x, mut dx, mut y) = (S::zero(), S::zero(), S::zero());
+    for own in source {
+        x += own.position(theta);
+        dx = S::from(own.ratio).mul_add(dtheta[own.j], dx);
+    }
+    for own in joints {
+        y += own.position(theta);
+    }
     let (two, three, four) = (S::from_f64(2.0), S::from_f64(3.0), S::from_f64(4.0));
     let (six, twelve) = (S::from_f64(6.0), S::from_f64(12.0));
     let f = x.mul_add(x.mul_add(x.mul_add(x.mul_add(c4, c3), c2), c1), c0);
     let df = x.mul_add(x.mul_add(x.mul_add(four * c4, three * c3), two * c2), c1);
     let ddf = x.mul_add(x.mul_add(twelve * c4, six * c3), two * c2);
     if !A.is_empty() {
-        A[joint.j] += S::from(joint.ratio);
-        if let Some(own) = source {
+        for own in joints {
+            A[own.j] += S::from(own.ratio);
+        }
+        for own in source {
             A[own.j] -= df * S::from(own.ratio);
         }
     }
     set(dA_dtheta, [-(ddf * dx * dx)]);
-    set(phi, [joint.position(theta) - f]);
+    set(phi, [y - f]);
 }
 
 /// The rows between two anchors.

@@ -1,7 +1,7 @@
 //! A against dual numbers of φ and of A θ̇; θ̈, λ, P and the impulse against a dense solution.
 
 use super::*;
-use crate::model::description::{Closure, Constraint};
+use crate::model::description::{Closure, Constraint, ConstraintKind, Gear};
 use crate::model::{Environment, Model};
 use crate::scalar::Dual;
 use crate::testing::{closed, floating_mixed_tree, mixed_tree, state, tree, wrench};
@@ -30,15 +30,23 @@ fn robots() -> Vec<(Model, [Vec<f64>; 3])> {
         if seed % 2 == 0 {
             let names: Vec<&str> =
                 model.joints().filter(|joint| joint.kind.name() == "revolute").map(|j| &*j.name).collect();
-            if let [a, b, ..] = names[..] {
+            if let [a, b, ref more @ ..] = names[..] {
                 let at = |name: &str| {
                     let place = model.places()[model.joint_names().position(|known| known == name).expect("there")];
                     state[0][place.q]
                 };
-                let (x, y) = (at(b), at(a));
+                // sums of two joints' positions, where there are as many
+                let gears = |first: &str, ratio: f64, second: Option<&&str>| {
+                    let second = second.map(|&joint| Gear { joint: joint.into(), ratio });
+                    [Gear { joint: first.into(), ratio: 1.0 }].into_iter().chain(second).collect::<Vec<_>>()
+                };
+                let (joints, source) = (gears(a, -0.6, more.first()), gears(b, 1.7, more.get(1)));
+                let [y, x] =
+                    [&joints, &source].map(|sum| sum.iter().map(|gear| gear.ratio * at(&gear.joint)).sum::<f64>());
                 let [c1, c2, c3, c4] = [0.7, -0.3, 0.2, 0.1];
                 let c0 = y - x * (c1 + x * (c2 + x * (c3 + x * c4)));
-                let joint = Constraint::joint("cam", a, b, [c0, c1, c2, c3, c4]);
+                let kind = ConstraintKind::Joint { joints, source, polynomial: [c0, c1, c2, c3, c4] };
+                let joint = Constraint { name: "cam".into(), kind };
                 model = model.with_constraints([joint]).expect("joints");
             }
         }

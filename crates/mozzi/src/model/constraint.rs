@@ -1,8 +1,10 @@
 //! Constraints as described: what closes a loop, pins a frame or couples joints (Modern Robotics, section 8.7).
 
+use super::description::Gear;
 use crate::lie::SE3;
 use crate::scalar::Real;
 use alloc::string::String;
+use alloc::vec::Vec;
 
 /// A constraint A(θ)θ̇ = 0 on the motion of the robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,12 +27,13 @@ pub enum ConstraintKind<C = f64> {
         /// Which part of the relative motion is zero.
         closure: Closure<C>,
     },
-    /// The position of a joint of one axis is a polynomial of another's: θ_j = Σ_k c_k θ_iᵏ. One row.
+    /// A sum of positions of joints of one axis is a polynomial of another such sum: Σ r_j θ_j = Σ_k c_k (Σ r_i θ_i)ᵏ,
+    /// most often θ_j = c₀ + c₁θ_i. One row.
     Joint {
-        /// The joint j.
-        joint: String,
-        /// The joint i; `None` means that θ_j = c₀.
-        source: Option<String>,
+        /// The joints j, with r_j.
+        joints: Vec<Gear<C>>,
+        /// The joints i, with r_i; none means that the sum is c₀.
+        source: Vec<Gear<C>>,
         /// c₀ … c₄.
         polynomial: [C; 5],
     },
@@ -123,8 +126,9 @@ impl Constraint {
         source: impl Into<String>,
         polynomial: [f64; 5],
     ) -> Self {
-        let (joint, source) = (joint.into(), Some(source.into()));
-        Constraint { name: name.into(), kind: ConstraintKind::Joint { joint, source, polynomial } }
+        let one = |joint: String| alloc::vec![Gear { joint, ratio: 1.0 }];
+        let (joints, source) = (one(joint.into()), one(source.into()));
+        Constraint { name: name.into(), kind: ConstraintKind::Joint { joints, source, polynomial } }
     }
 }
 
@@ -187,8 +191,9 @@ impl<C: Real> Constraint<C> {
                 let closure = closure.map(f);
                 ConstraintKind::Frames { a: anchor(a), b: anchor(b), closure }
             }
-            ConstraintKind::Joint { joint, source, polynomial } => {
-                ConstraintKind::Joint { joint: joint.clone(), source: source.clone(), polynomial: polynomial.map(f) }
+            ConstraintKind::Joint { joints, source, polynomial } => {
+                let [joints, source] = [joints, source].map(|sum| sum.iter().map(|gear| gear.map(f)).collect());
+                ConstraintKind::Joint { joints, source, polynomial: polynomial.map(f) }
             }
         };
         Constraint { name: self.name.clone(), kind }

@@ -197,8 +197,15 @@ pub struct Rotor<C = f64> {
 pub struct Gear<C = f64> {
     /// The joint; mimic joints are allowed.
     pub joint: String,
-    /// The rotor's rate over the joint's.
+    /// The rotor's rate over the joint's; in a constraint the joint's part of a sum.
     pub ratio: C,
+}
+
+impl<C: Copy> Gear<C> {
+    /// A copy with its number converted by `f`.
+    pub(super) fn map<U>(&self, f: impl Fn(C) -> U) -> Gear<U> {
+        Gear { joint: self.joint.clone(), ratio: f(self.ratio) }
+    }
 }
 
 /// A frame fixed to a link.
@@ -308,11 +315,10 @@ impl<C: Real> Description<C> {
             }),
         };
         let link = |link: &Link<C>| Link { name: link.name.clone(), inertia: link.inertia.map(f) };
-        let gear = |gear: &Gear<C>| Gear { joint: gear.joint.clone(), ratio: f(gear.ratio) };
         let rotor = |rotor: &Rotor<C>| Rotor {
             name: rotor.name.clone(),
             armature: f(rotor.armature),
-            gears: rotor.gears.iter().map(gear).collect(),
+            gears: rotor.gears.iter().map(|gear| gear.map(f)).collect(),
         };
         let frame = |frame: &NamedFrame<C>| NamedFrame {
             name: frame.name.clone(),

@@ -223,7 +223,11 @@ impl Model<f64> {
             ConstraintKind::Frames { a, b, .. } => {
                 [a, b].map(|anchor| anchor.frame.as_deref().is_none_or(|name| self.is_on(name, &links)))
             }
-            ConstraintKind::Joint { joint, source, .. } => [on_path(joint), source.as_ref().is_none_or(on_path)],
+            ConstraintKind::Joint { joints, source, .. } => {
+                let mut of = joints.iter().chain(source).map(|gear| on_path(&gear.joint));
+                let all = of.clone().all(|is_on| is_on);
+                [of.any(|is_on| is_on), all]
+            }
         };
         constraints.retain(|one| links_of(one) != [false, false]);
         if let Some(one) = constraints.iter().find(|one| links_of(one) != [true, true]) {

@@ -1,6 +1,6 @@
 //! Constraints as the kernels read them: anchors in the links' normal frames, rows, and the velocities they couple.
 
-use super::description::{Anchor, Closure, ConstraintKind, Description};
+use super::description::{Anchor, Closure, ConstraintKind, Description, Gear};
 use super::{Frame, Link};
 use crate::lie::SE3;
 use crate::linalg::ldlt::Pattern;
@@ -26,10 +26,10 @@ pub(crate) struct Tie<C> {
     pub kind: TieKind<C>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum TieKind<C> {
     Frames { a: End<C>, b: End<C>, closure: Closure<C> },
-    Joint { joint: Own<C>, source: Option<Own<C>>, polynomial: [C; 5] },
+    Joint { joints: Vec<Own<C>>, source: Vec<Own<C>>, polynomial: [C; 5] },
 }
 
 /// An anchor. A slot of `None` is {s}; a fixed base is {s}, too.
@@ -40,7 +40,7 @@ pub(crate) struct End<C> {
     pub T: SE3<C>,
 }
 
-/// The position of a joint, ratio · θ + offset.
+/// A multiple of a joint's position, ratio · θ + offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Own<C> {
     pub q: usize,
@@ -67,10 +67,13 @@ impl<C: Scalar> Ties<C> {
         let tie = |tie: &Tie<C>| Tie {
             first: tie.first,
             support: tie.support.clone(),
-            kind: match tie.kind {
-                TieKind::Frames { a, b, closure } => TieKind::Frames { a: end(a), b: end(b), closure: closure.map(f) },
-                TieKind::Joint { joint, source, polynomial } => {
-                    TieKind::Joint { joint: own(joint), source: source.map(own), polynomial: polynomial.map(f) }
+            kind: match &tie.kind {
+                TieKind::Frames { a, b, closure } => {
+                    TieKind::Frames { a: end(*a), b: end(*b), closure: closure.map(f) }
+                }
+                TieKind::Joint { joints, source, polynomial } => {
+                    let [joints, source] = [joints, source].map(|sum| sum.iter().copied().map(own).collect());
+                    TieKind::Joint { joints, source, polynomial: polynomial.map(f) }
                 }
             },
         };
@@ -100,23 +103,22 @@ pub(super) fn ties<C: Real>(
             End { slot: Some(slot), T: T * anchor.T }
         }
     };
-    let own = |name: &str| {
-        let Link { q, j, ratio, offset, .. } = links[slots.get(name).copied().unwrap_or_default()];
-        Own { q, j, ratio, offset }
+    let own = |gear: &Gear<C>| {
+        let Link { q, j, ratio, offset, .. } = links[slots.get(gear.joint.as_str()).copied().unwrap_or_default()];
+        Own { q, j, ratio: gear.ratio * ratio, offset: gear.ratio * offset }
     };
     let (mut list, mut rows) = (Vec::new(), 0);
     for constraint in &description.constraints {
         let kind = match &constraint.kind {
             ConstraintKind::Frames { a, b, closure } => TieKind::Frames { a: end(a), b: end(b), closure: *closure },
-            ConstraintKind::Joint { joint, source, polynomial } => {
-                TieKind::Joint { joint: own(joint), source: source.as_deref().map(own), polynomial: *polynomial }
+            ConstraintKind::Joint { joints, source, polynomial } => {
+                let [joints, source] = [joints, source].map(|sum| sum.iter().map(own).collect());
+                TieKind::Joint { joints, source, polynomial: *polynomial }
             }
         };
         let moved = match &kind {
             TieKind::Frames { a, b, .. } => between(a.slot, b.slot, links),
-            TieKind::Joint { joint, source, .. } => {
-                core::iter::once(joint.j).chain(source.iter().map(|source| source.j)).collect()
-            }
+            TieKind::Joint { joints, source, .. } => joints.iter().chain(source).map(|own| own.j).collect(),
         };
         let mut support: Vec<usize> =
             moved.iter().flat_map(|&j| core::iter::once(j).chain(pattern.ancestors(j))).collect();

@@ -221,12 +221,17 @@ fn joints(model: &Model) -> Vec<String> {
 }
 
 fn rotors(robot: &Description) -> Vec<String> {
-    let gears = |rotor: &Rotor| {
-        let gear = |gear: &Gear| format!("{} · {}", scalar(gear.ratio), gear.joint);
-        rotor.gears.iter().map(gear).collect::<Vec<_>>().join(" + ")
-    };
-    let row = |rotor: &Rotor| vec![rotor.name.clone(), scalar(rotor.armature), gears(rotor)];
+    let row = |rotor: &Rotor| vec![rotor.name.clone(), scalar(rotor.armature), gears(&rotor.gears)];
     table(&robot.rotors.iter().map(row).collect::<Vec<_>>(), "lrl")
+}
+
+/// "2 · shoulder + elbow"
+fn gears(gears: &[Gear]) -> String {
+    let gear = |gear: &Gear| match gear.ratio {
+        1.0 => gear.joint.clone(),
+        ratio => format!("{} · {}", scalar(ratio), gear.joint),
+    };
+    gears.iter().map(gear).collect::<Vec<_>>().join(" + ")
 }
 
 /// Each constraint, and the rank of all of them at the assembled start.
@@ -238,13 +243,13 @@ fn constraints(model: &Model) -> Vec<String> {
                 format!("{} and {}", anchor(a), anchor(b)),
                 closure.length().map_or_else(String::new, |length| format!("{} m", scalar(*length))),
             ),
-            ConstraintKind::Joint { joint, source, polynomial } => {
+            ConstraintKind::Joint { joints, source, polynomial } => {
                 let powers = ["", " x", " x²", " x³", " x⁴"];
                 let terms = polynomial.iter().zip(powers).filter(|(c, _)| **c != 0.0);
                 let terms: Vec<String> = terms.map(|(c, power)| format!("{}{power}", scalar(*c))).collect();
                 let sum = if terms.is_empty() { "0".to_string() } else { terms.join(" + ") };
-                let of = source.as_ref().map_or_else(String::new, |source| format!(", x = {source}"));
-                (format!("{joint} = {sum}{of}"), String::new())
+                let of = if source.is_empty() { String::new() } else { format!(", x = {}", gears(source)) };
+                (format!("{} = {sum}{of}", gears(joints)), String::new())
             }
         };
         vec![constraint.name.clone(), constraint.kind_name().to_string(), what, length]

@@ -2,10 +2,10 @@
 
 use super::tree::Tree;
 use super::{Element, Report};
-use crate::model::description::{Anchor, Constraint, ConstraintKind, JointKind};
+use crate::model::description::{Anchor, Constraint, ConstraintKind, Gear, JointKind};
 use crate::model::error::names;
 use crate::model::{Base, Description};
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::format;
 use alloc::string::ToString;
 
@@ -45,19 +45,29 @@ impl Report<'_> {
                         self.can_move(element, constraint, [a, b], frames, tree);
                     }
                 }
-                ConstraintKind::Joint { joint, source, polynomial } => {
+                ConstraintKind::Joint { joints: sum, source, polynomial } => {
                     if polynomial.iter().any(|x| !x.is_finite()) {
                         let message = format!("is {polynomial:?}, expected finite numbers");
                         self.error(element, "polynomial", "not_finite", message);
                     }
-                    for (attribute, name) in [("joint", Some(joint)), ("source", source.as_ref())] {
-                        if let Some(name) = name {
-                            self.one_axis(element, attribute, name, joints);
-                        }
+                    if sum.is_empty() {
+                        let message = "is missing, expected the joint that is held".to_string();
+                        self.error(element, "joint", "unknown_joint", message);
                     }
-                    if source.as_ref() == Some(joint) {
-                        let message = format!("is `{joint}` itself, expected another joint");
-                        self.error(element, "source", "self_constraint", message);
+                    let mut seen = BTreeSet::new();
+                    for (attribute, gear) in
+                        sum.iter().map(|gear| ("joint", gear)).chain(source.iter().map(|gear| ("source", gear)))
+                    {
+                        let Gear { joint, ratio } = gear;
+                        self.one_axis(element, attribute, joint, joints);
+                        if !(ratio.is_finite() && *ratio != 0.0) {
+                            let message = format!("has `{joint}` times {ratio}, expected a finite number but 0");
+                            self.error(element, attribute, "not_finite", message);
+                        }
+                        if !seen.insert(joint) {
+                            let message = format!("has `{joint}` twice, expected each joint once");
+                            self.error(element, attribute, "self_constraint", message);
+                        }
                     }
                 }
             }
