@@ -91,9 +91,9 @@ fn recorded(model: &Model, query: Query, arguments: Arguments) -> Result<Program
     let reduced = query.declaration().is_of_forces.then(|| model.reduced());
     let model = reduced.as_ref().unwrap_or(model);
     let own = arguments.parameters.then(|| ("parameters", model.parameter_count()));
-    let program = record_kernel(model, query, arguments, own, |parameters| match parameters {
-        Some(parameters) => model.with_parameters(parameters),
-        None => model.map(RobotNumber::Constant),
+    let program = record_kernel(model, query, arguments, own, |own| match arguments.parameters {
+        true => model.with_parameters(own),
+        false => model.map(RobotNumber::Constant),
     })?;
     Ok(needed::ordered(program, query, model.n()))
 }
@@ -122,7 +122,7 @@ pub fn record_numbers<C: Scalar + PartialEq>(
     let program = record_kernel(model, query, arguments, own, |numbers| {
         model.map(|x| match constant(x) {
             Some(x) => RobotNumber::Constant(x),
-            None => numbers.unwrap_or_default()[next.replace(next.get() + 1)],
+            None => numbers[next.replace(next.get() + 1)],
         })
     })?;
     Ok((program, found))
@@ -134,7 +134,7 @@ fn record_kernel<C: Scalar>(
     query: Query,
     arguments: Arguments,
     own: Option<(&str, usize)>,
-    robot: impl FnOnce(Option<&[RobotNumber]>) -> Model<RobotNumber>,
+    robot: impl FnOnce(&[RobotNumber]) -> Model<RobotNumber>,
 ) -> Result<Program, TooLong> {
     let declaration = query.declaration();
     let further = arguments.inputs(model);
@@ -143,34 +143,45 @@ fn record_kernel<C: Scalar>(
     let inputs: Vec<(&str, usize)> = state.chain(own).chain(further).collect();
     record(query.name(), &inputs, |arrays| {
         let (state, rest) = arrays.split_at(declaration.inputs.len());
-        let state: Vec<&[Traced]> = state.iter().map(Vec::as_slice).collect();
-        let mut rest = rest.iter().map(Vec::as_slice);
-        let mut next = |is_argument: bool| if is_argument { rest.next() } else { None };
-        let own = next(own.is_some()).map(|own| own.iter().map(|&x| RobotNumber::Recorded(x)).collect::<Vec<_>>());
-        let robot = robot(own.as_deref());
-        fn fixed<const K: usize>(numbers: &[Traced]) -> [Traced; K] {
-            std::array::from_fn(|k| numbers[k])
-        }
-        let gravity = next(arguments.gravity).map_or(robot.gravity().map(Traced::from), |g| Vec3(fixed(g)));
-        let twist = |x: Option<&[Traced]>| x.map_or(Twist::zero(), |x| Twist::from_array(fixed(x)));
-        let base_twist = twist(next(arguments.base_twist));
-        let base_acceleration = twist(next(arguments.base_acceleration));
-        let point = next(arguments.about).map(|p| Vec3(fixed(p)));
-        let wrenches = arguments.wrenches.iter().filter_map(|&frame| Some((frame, next(true)?)));
-        let applied: Vec<_> = wrenches.map(|(frame, F)| (frame, Wrench::from_array(fixed(F)))).collect();
-        let environment = Environment { gravity, base_twist, base_acceleration, applied: &applied };
-
-        let mut memory = Memory::new(&robot);
-        if let Some(point) = point {
-            memory = memory.with_point(point);
-        }
-        let zero = Traced::from(0.0);
-        let mut outputs: Vec<Vec<Traced>> = query.output_lengths(&robot).map(|length| vec![zero; length]).collect();
-        let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        query.evaluate(&robot, &state, &environment, &mut memory, &mut slices);
-        let names = declaration.outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
-        names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
+        let (own, rest) = rest.split_at(usize::from(own.is_some()));
+        let own: Vec<RobotNumber> = own.iter().flatten().map(|&x| RobotNumber::Recorded(x)).collect();
+        outputs(query, &robot(&own), arguments, state, rest)
     })
+}
+
+/// The outputs of a query's kernel, by name. It is not generic, so that kernels are compiled in this crate alone.
+fn outputs(
+    query: Query,
+    model: &Model<RobotNumber>,
+    arguments: Arguments,
+    state: &[Vec<Traced>],
+    further: &[Vec<Traced>],
+) -> Vec<(&'static str, Vec<Traced>)> {
+    fn fixed<const K: usize>(numbers: &[Traced]) -> [Traced; K] {
+        std::array::from_fn(|k| numbers[k])
+    }
+    let state: Vec<&[Traced]> = state.iter().map(Vec::as_slice).collect();
+    let mut further = further.iter().map(Vec::as_slice);
+    let mut next = |is_argument: bool| if is_argument { further.next() } else { None };
+    let gravity = next(arguments.gravity).map_or(model.gravity().map(Traced::from), |g| Vec3(fixed(g)));
+    let twist = |x: Option<&[Traced]>| x.map_or(Twist::zero(), |x| Twist::from_array(fixed(x)));
+    let base_twist = twist(next(arguments.base_twist));
+    let base_acceleration = twist(next(arguments.base_acceleration));
+    let point = next(arguments.about).map(|p| Vec3(fixed(p)));
+    let wrenches = arguments.wrenches.iter().filter_map(|&frame| Some((frame, next(true)?)));
+    let applied: Vec<_> = wrenches.map(|(frame, F)| (frame, Wrench::from_array(fixed(F)))).collect();
+    let environment = Environment { gravity, base_twist, base_acceleration, applied: &applied };
+
+    let mut memory = Memory::new(model);
+    if let Some(point) = point {
+        memory = memory.with_point(point);
+    }
+    let zero = Traced::from(0.0);
+    let mut outputs: Vec<Vec<Traced>> = query.output_lengths(model).map(|length| vec![zero; length]).collect();
+    let mut slices: Vec<&mut [Traced]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+    query.evaluate(model, &state, &environment, &mut memory, &mut slices);
+    let names = query.declaration().outputs.iter().map(|output| output.name).chain(pivot_names(&query).iter().copied());
+    names.zip(outputs.into_iter().chain(memory.pivots().map(<[_]>::to_vec))).collect()
 }
 
 /// The outputs of a program after the quantity's own: the pivots that it divides by.
