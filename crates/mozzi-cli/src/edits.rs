@@ -3,6 +3,7 @@
 use crate::angles::turns;
 use crate::failure::{Failure, Result};
 use crate::numbers::{angle, array, number, numbers};
+use crate::workload;
 use clap::Args;
 use mozzi::linalg::Sym3;
 use mozzi::model::description::{Anchor, Constraint};
@@ -55,8 +56,18 @@ impl EditArguments {
     }
 }
 
+/// The robot whose parameters are sought: with the rotors of `--coupled`, and joints locked. One with too many
+/// parameters is refused.
+pub fn sought(robot: &Model, coupled_texts: &[String], lock_texts: &[String]) -> Result<Model> {
+    let coupled = coupled(robot, coupled_texts)?;
+    let locks = locks(lock_texts, robot)?;
+    let sought = if locks.is_empty() { coupled } else { coupled.with_locked_joints(&locks)? };
+    workload::square("parameters", sought.parameter_count())?;
+    Ok(sought)
+}
+
 /// The robot with the rotors of `--coupled`, each from a text "JOINT[=RATIO],JOINT[=RATIO]".
-pub fn coupled(robot: &Model, texts: &[String]) -> Result<Model> {
+fn coupled(robot: &Model, texts: &[String]) -> Result<Model> {
     let mut robot = robot.clone();
     for text in texts {
         let mut gears = Vec::new();

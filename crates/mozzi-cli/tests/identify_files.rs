@@ -291,3 +291,28 @@ fn bags_of_rosbag2_are_read() {
     let (_, why) = complaint(&["identify", &robot, &empty]);
     assert!(why.contains("is a folder without .db3 or .mcap"), "{why}");
 }
+
+#[test]
+fn a_robot_of_too_many_parameters_is_refused_before_its_logs_are_read() {
+    let mut robot = String::from("<robot name=\"fan\"><link name=\"base\"/>\n");
+    for k in 0..800 {
+        let _ = write!(
+            robot,
+            "<joint name=\"j{k}\" type=\"continuous\"><parent link=\"base\"/><child link=\"l{k}\"/></joint><link \
+             name=\"l{k}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" \
+             iyz=\"0\"/></inertial></link>\n"
+        );
+    }
+    let fan = file(&folder("fan"), "fan.urdf", &(robot + "</robot>"));
+    for command in [&["identify", &fan, "no_such_log.csv"][..], &["excite", &fan]] {
+        let (code, message) = complaint(command);
+        assert_eq!(code, 1, "{message}");
+        assert!(message.contains("the robot has 12000 parameters, and a matrix n × n takes"), "{message}");
+    }
+    // locked joints have none
+    let mut locked = vec!["identify", &fan, "no_such_log.csv"];
+    let locks: Vec<String> = (200..800).map(|k| format!("j{k}=0")).collect();
+    locks.iter().for_each(|lock| locked.extend(["--lock", lock]));
+    let (code, message) = complaint(&locked);
+    assert!(code == 1 && message.contains("no_such_log.csv"), "{message}");
+}

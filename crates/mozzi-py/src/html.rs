@@ -1,6 +1,7 @@
 //! HTML representation of a model in a notebook: a table of its joints.
 
 use mozzi::Model;
+use mozzi_report::escaped;
 use mozzi_report::text::scalar;
 use std::fmt::Write;
 
@@ -31,8 +32,4 @@ pub fn table(model: &Model) -> String {
         text.push_str("</tr>");
     }
     text + "</table>"
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -44,6 +44,7 @@ pub use drawing::{Drawing, Meshes};
 pub use error::Error;
 pub use fit::fit_html;
 pub use fit_json::fit_json;
+pub use markup::escaped;
 pub use motion::Motion;
 pub use play::{Played, lesson_html, lessons, play_html};
 pub use touches::Touches;

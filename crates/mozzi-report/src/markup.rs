@@ -4,7 +4,7 @@
 pub(crate) const SANS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
 /// Text as SVG or HTML.
-pub(crate) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

@@ -8,7 +8,7 @@ use crate::numbers::{self, array, number, one_or_each};
 use crate::robot::FileArguments;
 use crate::tables::format::Format;
 use crate::text::{Page, table};
-use crate::{interrupt, json, workload};
+use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_identify::excite::{Box3, Excitation, ExciteOptions, Goal, Sphere, excite};
@@ -94,10 +94,7 @@ enum Place {
 pub fn run(arguments: &ExciteArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let whole = arguments.robot.load()?;
-    let coupled = edits::coupled(&whole, &arguments.coupled)?;
-    let locks = edits::locks(&arguments.lock, &coupled)?;
-    let model = if locks.is_empty() { coupled } else { coupled.with_locked_joints(&locks)? };
-    workload::square("parameters", model.parameter_count())?;
+    let model = edits::sought(&whole, &arguments.coupled, &arguments.lock)?;
     let options = arguments.options(&model)?;
     for (name, [low, high]) in model.joint_names().zip(&options.limits.position) {
         if low >= high {

@@ -16,7 +16,7 @@ use crate::progress::Waiting;
 use crate::recogniser::Force;
 use crate::robot::FileArguments;
 use crate::tables::samples::Row;
-use crate::{interrupt, json, workload};
+use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use log_file::{Given, read_log, read_table};
 use mozzi::Model;
@@ -158,11 +158,7 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
-    let coupled = edits::coupled(&whole, &arguments.coupled)?;
-    let lock = arguments.lock_list(&whole)?;
-    let locks = edits::locks(&lock, &whole)?;
-    let model = if locks.is_empty() { coupled } else { coupled.with_locked_joints(&locks)? };
-    workload::square("parameters", model.parameter_count())?;
+    let model = edits::sought(&whole, &arguments.coupled, &arguments.lock_list(&whole)?)?;
     let given = arguments.given();
     if arguments.columns {
         return arguments.column_tables(&model, &given);

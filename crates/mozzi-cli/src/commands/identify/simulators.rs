@@ -5,6 +5,7 @@ use clap::ValueEnum;
 use mozzi::Description;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi_identify::{Identification, Servo};
+use mozzi_report::escaped;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Simulator {
@@ -74,10 +75,6 @@ fn digits(x: f64) -> String {
 /// Attributes that are not 0.
 fn attributes(list: &[(&str, f64)]) -> String {
     list.iter().filter(|(_, x)| *x != 0.0).map(|(name, x)| format!(" {name}=\"{}\"", digits(*x))).collect()
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
 fn mjcf(motors: &[Motor]) -> Vec<String> {
