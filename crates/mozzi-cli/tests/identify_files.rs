@@ -296,11 +296,11 @@ fn bags_of_rosbag2_are_read() {
 fn a_robot_of_too_many_parameters_is_refused_before_its_logs_are_read() {
     let mut robot = String::from("<robot name=\"fan\"><link name=\"base\"/>\n");
     for k in 0..800 {
-        let _ = write!(
+        let _ = writeln!(
             robot,
             "<joint name=\"j{k}\" type=\"continuous\"><parent link=\"base\"/><child link=\"l{k}\"/></joint><link \
              name=\"l{k}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" \
-             iyz=\"0\"/></inertial></link>\n"
+             iyz=\"0\"/></inertial></link>"
         );
     }
     let fan = file(&folder("fan"), "fan.urdf", &(robot + "</robot>"));
