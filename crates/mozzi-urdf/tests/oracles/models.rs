@@ -107,7 +107,7 @@ fn page(entries: &[Entry], written: &BTreeMap<&str, f64>) -> String {
     let _ = write!(
         page,
         "\nOf {} files {trees} are models with hinges, slides, balls and free bodies. {} of them are trees: they load, and agree with MuJoCo \
-         at 100 random states each. The other {} are refused by name.\n\n\
+         at 100 random states each. Refused by name: {}.\n\n\
          ## Trees\n\n\
          Poses of all bodies, Jacobians, M, h, τ, θ̈ and the kinetic energy, without springs, damping and friction, which are \
          switched off in MuJoCo. The error is normalised: the difference over ε = 2.2 × 10⁻¹⁶ times the size of the terms. \
