@@ -35,14 +35,18 @@ impl Kernel {
 
     /// The outputs; the last input is the wrench of the tip, if there is one.
     pub fn outputs(&self, inputs: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
-        let (state, wrench) = inputs.split_at(self.inputs);
-        let all = state.iter().chain([&self.numbers]).chain(wrench);
-        self.program.evaluate(&all.map(Vec::as_slice).collect::<Vec<_>>())
+        self.outputs_with(&self.numbers, inputs)
     }
 
-    /// The robot with other numbers.
-    pub fn at(&self, number: impl Fn(Symbol) -> Symbol) -> Self {
+    /// The outputs of the robot whose numbers these expressions give for its own.
+    pub fn outputs_at(&self, number: impl Fn(Symbol) -> Symbol, inputs: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
         let numbers = self.numbers.iter().map(|&x| number(x)).collect();
-        Kernel { program: self.program.clone(), numbers, inputs: self.inputs }
+        self.outputs_with(&numbers, inputs)
+    }
+
+    fn outputs_with(&self, numbers: &Vec<Symbol>, inputs: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
+        let (state, wrench) = inputs.split_at(self.inputs);
+        let all = state.iter().chain([numbers]).chain(wrench);
+        self.program.evaluate(&all.map(Vec::as_slice).collect::<Vec<_>>())
     }
 }

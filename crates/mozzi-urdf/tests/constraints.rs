@@ -105,6 +105,11 @@ fn soft_parameters_are_noted_and_unnamed_ones_numbered() {
     let ConstraintKind::Frames { a, b, closure } = &loaded.description.constraints[0].kind else { panic!() };
     assert_eq!((a.frame.as_deref(), &b.frame, closure), (Some("a"), &None, &Closure::Point));
     assert_eq!((a.T.p, b.T.p), (Vec3([0.0, 0.0, 1.0]), Vec3([0.0, 0.0, 1.0])));
+    // a tied tendon without length
+    let text = "<mujoco><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody><tendon><fixed name='t'>\
+         <joint joint='j' coef='0'/></fixed></tendon><equality><tendon tendon1='t'/></equality></mujoco>";
+    let error = parse("a.xml", text).unwrap_err().to_string();
+    assert!(error.contains("tendon1: is a tendon of length 0, expected a `coef` other than 0"), "{error}");
     // a second coupling of a joint is a constraint
     let text = "<mujoco><worldbody><body><joint name='a'/><joint name='b' axis='0 1 0' ref='90'/><joint name='c' axis='1 0 0'/>\
          <geom size='1'/></body></worldbody><equality><joint joint1='b' joint2='a'/>\

@@ -24,8 +24,10 @@ impl<'a> Model<'a> {
             };
         }
         // equalities tie tendons, and actuators drive them
-        let order = |section: &&Element| {
-            ["tendon", "", "actuator"].iter().position(|name| section.name() == *name).unwrap_or(1)
+        let order = |section: &&Element| match section.name() {
+            "tendon" => 0,
+            "actuator" => 2,
+            _ => 1,
         };
         let mut ordered: Vec<&Element> = sections.iter().collect();
         ordered.sort_by_key(order);

@@ -146,10 +146,7 @@ impl<'a> Model<'a> {
     /// y − y₀ = Σ a_k (x − x₀)ᵏ: if linear, y is a mimic joint of x, unless it is one already; else a constraint.
     fn coupling(&mut self, item: &Item<'a>, names: &BTreeMap<String, usize>, cx: &mut Context) {
         let polynomial = polynomial(item, cx);
-        let mut joint = |attribute| find(&item.element, attribute, "joint", "unknown_joint", names, cx);
-        let y = joint("joint1");
-        let x = if item.element.attribute("joint2").is_some() { Some(joint("joint2")) } else { None };
-        let (Some(y), Some(source)) = (y, x.map_or(Some(None), |x| x.map(Some))) else { return };
+        let Some((y, source)) = pair(&item.element, ["joint1", "joint2"], "joint", names, cx) else { return };
         let name = |joint: usize| self.tree.joints[joint].name.given.clone().unwrap_or_default();
         let y0 = self.tree.joints[y].reference;
         if let (Some(x), [a0, a1, 0.0, 0.0, 0.0], None) = (source, polynomial, &self.tree.joints[y].joint.mimic) {
@@ -170,19 +167,24 @@ impl<'a> Model<'a> {
     fn tendon_coupling(&mut self, item: &Item<'a>, joints: &BTreeMap<String, usize>, cx: &mut Context) {
         let tendons = self.tree.rotors.iter().enumerate();
         let tendons = tendons.filter_map(|(i, tendon)| Some((tendon.name.given.clone()?, i))).collect();
-        let mut tendon = |attribute| find(&item.element, attribute, "tendon", "unknown_joint", &tendons, cx);
-        let one = tendon("tendon1");
-        let two = if item.element.attribute("tendon2").is_some() { Some(tendon("tendon2")) } else { None };
-        let (Some(one), Some(two)) = (one, two.map_or(Some(None), |two| two.map(Some))) else { return };
+        let attributes = ["tendon1", "tendon2"];
+        let Some((one, two)) = pair(&item.element, attributes, "tendon", &tendons, cx) else { return };
         let mut sum = |(attribute, tendon): (&str, usize)| {
             let tendon = &mut self.tree.rotors[tendon];
             tendon.is_tied = true;
-            if !tendon.is_fixed {
-                let message = format!("{attribute}: is a spatial tendon, which mozzi does not compute");
+            let gears: Vec<Gear> = tendon.gears.iter().filter(|gear| gear.ratio != 0.0).cloned().collect();
+            let what = match () {
+                () if !tendon.is_fixed => Some("is a spatial tendon, which mozzi does not compute"),
+                () if gears.is_empty() && !tendon.gears.is_empty() => {
+                    Some("is a tendon of length 0, expected a `coef` other than 0")
+                }
+                () => None,
+            };
+            if let Some(what) = what {
+                let message = format!("{attribute}: {what}");
                 let help = "remove the equality, or set active=\"false\", if you want to compute the robot without it";
                 cx.findings.add(item.error("unsupported_equality", attribute, &message).help(help));
             }
-            let gears: Vec<Gear> = tendon.gears.iter().filter(|gear| gear.ratio != 0.0).cloned().collect();
             (!gears.is_empty()).then_some(gears) // else reported
         };
         let (one, two) = (sum(("tendon1", one)), two.map(|two| sum(("tendon2", two))));
@@ -239,6 +241,20 @@ fn ends(item: &Item, named: &Named, cx: &mut Context) -> Option<Ends> {
     let one = body("body1");
     let two = if element.attribute("body2").is_some() { body("body2") } else { Some(0) };
     Some(Ends::Bodies([one?, two?]))
+}
+
+/// The joints or tendons named by two attributes, of which the second may be absent.
+fn pair(
+    element: &Element,
+    [one, two]: [&str; 2],
+    what: &str,
+    named: &BTreeMap<String, usize>,
+    cx: &mut Context,
+) -> Option<(usize, Option<usize>)> {
+    let mut get = |attribute| find(element, attribute, what, "unknown_joint", named, cx);
+    let first = get(one);
+    let second = if element.attribute(two).is_some() { Some(get(two)?) } else { None };
+    Some((first?, second))
 }
 
 /// The element named by an attribute; None, with a diagnostic, if there is none.
