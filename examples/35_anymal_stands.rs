@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     println!("  t [s]   base y [m]   base z [m]   force on the ground [N]");
     for row in run.motion.samples() {
-        let down: f64 = row.contact_forces.chunks(3).map(|f| -f[2]).sum();
+        let down = -row.total_contact_force().0[2];
         println!("{:7.2}   {:10.5}   {:10.5}   {down:10.3}", row.t, row.theta[5], row.theta[6]);
     }
     for event in run.contact_events.iter().take(8) {
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let account = run.one_sided.ok_or("no contacts")?;
     println!("the laws of friction hold to {:.0e} m/s in every step", account.largest_residual);
     let last = run.motion.last();
-    let weight: f64 = last.contact_forces.chunks(3).map(|f| -f[2]).sum();
+    let weight = -last.total_contact_force().0[2];
     let mass = model.mass_matrix(&pose)?[(3, 3)];
     println!("at the end the ground carries {weight:.6} N, the weight is {:.6} N", mass * 9.81);
     // the feet slid by a millimetre when they touched down; after the push the base returns to where it stood before

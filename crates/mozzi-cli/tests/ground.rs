@@ -57,6 +57,28 @@ fn a_cube_falls_on_the_ground() {
 }
 
 #[test]
+fn of_many_points_those_that_carry_are_written() {
+    let folder = folder("ground_many");
+    let cube = file(&folder, "cube.urdf", CUBE);
+    let point = |k: usize| {
+        let side = |bit: usize| if k & bit == 0 { -0.05 } else { 0.05 };
+        let z = if k < 4 { -0.05 } else { 0.05 };
+        format!(r#"{{"frame": "cube", "at": [{}, {}, {z}], "name": "{k}"}}"#, side(1), side(2))
+    };
+    for (count, written) in [(100, 100), (101, 4)] {
+        let points = (0..count).map(point).collect::<Vec<_>>().join(", ");
+        let contacts = file(&folder, "many.json", &format!(r#"{{"points": [{points}]}}"#));
+        let page = folder.join("page.html").display().to_string();
+        let flags = ["--contacts", &contacts, "--theta", "1,0,0,0,0,0,0.06", "--time", "0.2", "--report", &page];
+        let found = json(&[&["simulate", &cube, "--floating"], &flags[..]].concat());
+        let names = found["contacts"].as_array().expect("names");
+        let forces = rows(&found["contact_forces"]).pop().expect("rows");
+        assert_eq!((names.len(), forces.len()), (written, 3 * written));
+        assert_eq!((&names[3], forces[2] < 0.0), (&"3".into(), true));
+    }
+}
+
+#[test]
 fn tables_have_normal_and_tangential_forces() {
     // a box on a slope of 0.2 rad holds by friction: m g cos α along the normal, m g sin α across
     let folder = folder("ground_forces");

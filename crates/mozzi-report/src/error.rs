@@ -18,6 +18,14 @@ pub enum Error {
         /// Numbers per row.
         width: usize,
     },
+    /// A force of a contact that does not exist.
+    #[error("the motion has a force of contact {pair}, expected fewer than {all} contacts")]
+    Contact {
+        /// The pair of a contact point and a plane, from 0.
+        pair: usize,
+        /// The number of pairs.
+        all: usize,
+    },
     /// The times of the motion decrease, or one is not a number.
     #[error("the motion's time is {t} s in row {row}, expected times that do not decrease")]
     Time {

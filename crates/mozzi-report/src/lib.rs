@@ -47,7 +47,7 @@ pub use fit_json::fit_json;
 pub use markup::escaped;
 pub use motion::Motion;
 pub use play::{Played, lesson_html, lessons, play_html};
-pub use touches::Touches;
+pub use touches::{Touches, shown_contacts};
 
 use mozzi::Model;
 

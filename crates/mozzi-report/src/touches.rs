@@ -9,7 +9,10 @@ use mozzi_sim::Trajectory;
 use mozzi_sim::{ContactEvent, Contacts, PlaneMotion};
 use serde_json::{Value, json};
 
-/// The contacts of a simulated motion, by its rows.
+/// So many pairs are shown even where they do not carry: meshes have tens of thousands.
+const MOST: usize = 100;
+
+/// The contacts of a simulated motion, by its rows: see [`shown_contacts`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Touches {
     pairs: Vec<Pair>,
@@ -39,6 +42,12 @@ struct Surface {
     poses: Vec<f64>,
 }
 
+/// The pairs of a point and a plane that a page or a table of a motion shows: all, or those that carry in at least one
+/// row if there are more than [`MOST`].
+pub fn shown_contacts(pairs: usize, motion: &Trajectory) -> Vec<usize> {
+    if pairs <= MOST { (0..pairs).collect() } else { motion.carrying() }
+}
+
 impl Touches {
     /// The contacts of a simulation, with its rows and its events.
     ///
@@ -50,21 +59,24 @@ impl Touches {
         motion: &Trajectory,
         events: &[ContactEvent],
     ) -> Result<Self, Error> {
-        let (rows_of_motion, pairs) = (motion.len(), contacts.pairs());
-        let widths =
-            [("theta", motion.theta.len(), model.nq()), ("contact forces", motion.contact_forces.len(), 3 * pairs)];
-        for (what, found, width) in widths {
-            let (expected, rows) = (rows_of_motion * width, rows_of_motion);
-            if found != expected {
-                return Err(Error::Motion { what, found, expected, rows, width });
-            }
+        let (found, expected) = (motion.theta.len(), motion.len() * model.nq());
+        if found != expected {
+            return Err(Error::Motion { what: "theta", found, expected, rows: motion.len(), width: model.nq() });
         }
-        let of_row = |row: mozzi_sim::Sample| contacts.frames(model, row.t, row.theta);
-        let points = motion.samples().flat_map(of_row).flat_map(|frame| frame.p.0).collect();
-        let names = contacts.names().enumerate();
-        let pair = |(k, name): (usize, String)| {
-            let (point, plane) = (&contacts.points[k / contacts.planes.len()], k % contacts.planes.len());
-            Pair { name, frame: point.frame, plane, mu: point.mu }
+        let (carrying, all) = (motion.carrying(), contacts.pairs());
+        if let Some(&pair) = carrying.last().filter(|pair| **pair >= all) {
+            return Err(Error::Contact { pair, all });
+        }
+        let shown = shown_contacts(all, motion);
+        let of_row = |row: mozzi_sim::Sample| {
+            let place = |&pair: &usize| contacts.frame(model, row.t, row.theta, pair).p.0;
+            shown.iter().flat_map(place).collect::<Vec<_>>()
+        };
+        let points = motion.samples().flat_map(of_row).collect();
+        let names: Vec<String> = contacts.names().collect();
+        let pair = |&k: &usize| {
+            let point = contacts.point(k);
+            Pair { name: names[k].clone(), frame: point.frame, plane: k % contacts.planes.len(), mu: point.mu }
         };
         let surface = |plane: &mozzi_sim::Plane| {
             let at = |T: &SE3| rows(*T);
@@ -76,10 +88,10 @@ impl Touches {
             Surface { name: plane.name.clone(), velocity, poses }
         };
         Ok(Touches {
-            pairs: names.map(pair).collect(),
+            pairs: shown.iter().map(pair).collect(),
             planes: contacts.planes.iter().map(surface).collect(),
             points,
-            forces: motion.contact_forces.clone(),
+            forces: motion.samples().flat_map(|row| row.forces_of(shown.iter().copied())).collect(),
             events: events.to_vec(),
         })
     }
@@ -172,6 +184,6 @@ mod tests {
         assert!((touches.planes[0].poses[47] - (0.1 * 0.3 - 0.05)).abs() < 1e-12);
         let fewer = Contacts { points: contacts.points[..2].to_vec(), planes: planes() };
         let message = Touches::new(&model, &fewer, &motion, &events).expect_err("other contacts").to_string();
-        assert_eq!(message, "the motion's contact forces has 372 numbers, expected 186: 31 rows of 6");
+        assert_eq!(message, "the motion has a force of contact 3, expected fewer than 2 contacts");
     }
 }

@@ -1,7 +1,7 @@
 //! The simulation loop: steps, events and stops within them, and recorded rows.
 
 use crate::Error;
-use crate::contacts::Contacts;
+use crate::contacts::{ContactForce, Contacts};
 use crate::driven::Driven;
 use crate::events::stops::Stops;
 use crate::events::{Event, Occurrence, first_zero, parts};
@@ -348,7 +348,7 @@ impl<'r> Course<'r> {
 }
 
 /// The contact forces.
-fn forces<'a>(impulses: &'a Option<Box<Impulses>>) -> &'a [f64] {
+fn forces<'a>(impulses: &'a Option<Box<Impulses>>) -> &'a [ContactForce] {
     impulses.as_ref().map_or(&[], |impulses| &impulses.forces)
 }
 

@@ -54,7 +54,7 @@ mod tests;
 mod trajectory;
 
 pub use closing::{Closer, Closing};
-pub use contacts::{ContactChange, ContactEvent, Contacts, Plane, PlaneMotion};
+pub use contacts::{ContactChange, ContactEvent, ContactForce, Contacts, Plane, PlaneMotion};
 pub use equation::{Equation, ForwardDynamics, Powers, forward_dynamics_of};
 pub use error::Error;
 pub use events::{Direction, Event, EventFunction, Occurrence, Policy, Stopped};

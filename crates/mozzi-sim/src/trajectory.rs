@@ -1,6 +1,8 @@
 //! The result of a simulation.
 
+use crate::ContactForce;
 use alloc::vec::Vec;
+use mozzi::linalg::Vec3;
 use mozzi::model::Model;
 
 /// Energies and works, in joules. Work counts from the start of the simulation: W = ∫ power dt is a further component
@@ -55,11 +57,10 @@ pub struct Trajectory {
     pub tau: Vec<f64>,
     /// One for each row.
     pub energy: Vec<Energy>,
-    /// Columns of `contact_forces`: three for each pair of a contact point and a plane.
-    pub forces: usize,
-    /// The forces that contact points apply to planes, in {s}, N: see
-    /// [`Contacts::names`](crate::Contacts::names). The mean over the step that ends at the row.
-    pub contact_forces: Vec<f64>,
+    /// The forces that contact points apply to planes, row after row: see [`Sample::contact_forces`].
+    contact_forces: Vec<ContactForce>,
+    /// Where those of each row end.
+    ends: Vec<usize>,
     /// Steps taken.
     pub steps: usize,
     /// True if it reached t_f; false if the progress callback stopped it.
@@ -81,8 +82,28 @@ pub struct Sample<'a> {
     pub tau: &'a [f64],
     /// Energies, and works since the start.
     pub energy: Energy,
-    /// The forces that contact points apply to planes, in {s}, N: three for each pair.
-    pub contact_forces: &'a [f64],
+    /// The forces that contact points apply to planes, where they are not 0, by their pairs: the mean over the step
+    /// that ends at the row.
+    pub contact_forces: &'a [ContactForce],
+}
+
+impl Sample<'_> {
+    /// The sum of the contact forces: what the robot applies to the planes, in {s}, N.
+    pub fn total_contact_force(&self) -> Vec3 {
+        self.contact_forces.iter().fold(Vec3::zero(), |sum, force| sum + force.f)
+    }
+
+    /// The forces of these pairs, which ascend, in {s}, N: three numbers each, also where they are 0.
+    pub fn forces_of(&self, pairs: impl IntoIterator<Item = usize>) -> Vec<f64> {
+        let mut carrying = self.contact_forces.iter().peekable();
+        let mut found = Vec::new();
+        for pair in pairs {
+            while carrying.next_if(|force| force.pair < pair).is_some() {}
+            let f = carrying.peek().filter(|force| force.pair == pair).map_or(Vec3::zero(), |force| force.f);
+            found.extend(f.0);
+        }
+        found
+    }
 }
 
 impl Trajectory {
@@ -97,8 +118,8 @@ impl Trajectory {
             ddtheta: Vec::new(),
             tau: Vec::new(),
             energy: Vec::new(),
-            forces: 0,
             contact_forces: Vec::new(),
+            ends: Vec::new(),
             steps: 0,
             complete: false,
         }
@@ -113,11 +134,9 @@ impl Trajectory {
         for list in [row.dtheta, row.ddtheta, row.tau] {
             assert!(list.len() == self.n, "a slice has {} entries, expected {}", list.len(), self.n);
         }
-        if self.t.is_empty() {
-            self.forces = row.contact_forces.len();
-        }
         self.t.push(row.t);
         self.contact_forces.extend(row.contact_forces);
+        self.ends.push(self.contact_forces.len());
         self.theta.extend(row.theta);
         self.dtheta.extend(row.dtheta);
         self.ddtheta.extend(row.ddtheta);
@@ -135,9 +154,15 @@ impl Trajectory {
                 ((entry - 1) / width).is_multiple_of(k)
             });
         };
+        let kept: Vec<_> = (0..self.len()).step_by(k).map(|row| self.forces_in(row).to_vec()).collect();
+        self.contact_forces.clear();
+        self.ends.clear();
+        for forces in kept {
+            self.contact_forces.extend(forces);
+            self.ends.push(self.contact_forces.len());
+        }
         thin(&mut self.t, 1);
         thin(&mut self.theta, nq);
-        thin(&mut self.contact_forces, self.forces.max(1));
         [&mut self.dtheta, &mut self.ddtheta, &mut self.tau].into_iter().for_each(|list| thin(list, n));
         let mut row = 0;
         self.energy.retain(|_| {
@@ -151,6 +176,7 @@ impl Trajectory {
         let lists = [&mut self.t, &mut self.theta, &mut self.dtheta, &mut self.ddtheta, &mut self.tau];
         lists.into_iter().for_each(Vec::clear);
         self.contact_forces.clear();
+        self.ends.clear();
         self.energy.clear();
     }
 
@@ -176,8 +202,21 @@ impl Trajectory {
             ddtheta: self.velocities(&self.ddtheta, k),
             tau: self.velocities(&self.tau, k),
             energy: self.energy[k],
-            contact_forces: &self.contact_forces[k * self.forces..(k + 1) * self.forces],
+            contact_forces: self.forces_in(k),
         }
+    }
+
+    fn forces_in(&self, row: usize) -> &[ContactForce] {
+        let start = if row == 0 { 0 } else { self.ends[row - 1] };
+        &self.contact_forces[start..self.ends[row]]
+    }
+
+    /// The pairs of a contact point and a plane that carry in at least one row, ascending.
+    pub fn carrying(&self) -> Vec<usize> {
+        let mut pairs: Vec<usize> = self.contact_forces.iter().map(|force| force.pair).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
     }
 
     fn velocities<'a>(&self, list: &'a [f64], k: usize) -> &'a [f64] {

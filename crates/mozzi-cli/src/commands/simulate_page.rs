@@ -8,8 +8,9 @@ use crate::robot::Units;
 use crate::text::{Decimals, Page, about, page_width, rows_of, scalar, table, width};
 use mozzi::{Model, SE3, SO3};
 use mozzi_motion::controllers::Overload;
-use mozzi_sim::Trajectory;
+use mozzi_report::shown_contacts;
 use mozzi_sim::{Closing, ContactEvent, Energy, OneSidedAccount, Stopped};
+use mozzi_sim::{Sample, Trajectory};
 use serde_json::{Value, json};
 
 /// Rows of the table on the screen.
@@ -24,6 +25,8 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
     let motion = &outcome.motion;
     let lists = |values: &[f64], n: usize| values.chunks(n.max(1)).map(json::vector).collect::<Value>();
     let [kinetic, potential, motor, friction, applied] = energies(motion).map(|list| json::vector(&list));
+    let shown = shown_contacts(outcome.contacts.len(), motion);
+    let forces = |row: Sample| json::vector(&row.forces_of(shown.iter().copied()));
     json::of_robot(
         model,
         json!({
@@ -50,9 +53,13 @@ pub fn object(model: &Model, outcome: &Outcome) -> Value {
                 "unsettled": a.unsettled,
                 "lifted": a.lifted,
                 "most_rows": a.most_rows,
+                "steps": a.steps,
+                "newton_steps": a.newton_steps,
+                "sweeps": a.sweeps,
+                "admm_iterations": a.admm_iterations,
             })),
-            "contacts": outcome.contacts,
-            "contact_forces": lists(&motion.contact_forces, motion.forces),
+            "contacts": shown.iter().map(|&pair| outcome.contacts[pair].as_str()).collect::<Value>(),
+            "contact_forces": motion.samples().map(forces).collect::<Value>(),
             "contact_events": outcome.contact_events.iter().map(|e| json!({
                 "t": e.t, "contact": e.contact, "change": e.change.name(),
             })).collect::<Value>(),
@@ -281,12 +288,10 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
 /// The contacts at the end, and their events.
 fn contact_lines(outcome: &Outcome) -> Vec<String> {
     let last = outcome.motion.last();
-    let carries = last.contact_forces.chunks(3).filter(|force| force.iter().any(|x| *x != 0.0)).count();
     let mut lines = Vec::new();
     if !outcome.contacts.is_empty() {
-        let sum = |k: usize| last.contact_forces.chunks(3).map(|force| force[k]).sum::<f64>();
-        let [x, y, z] = [0, 1, 2].map(|k| scalar(sum(k)));
-        let all = outcome.contacts.len();
+        let [x, y, z] = last.total_contact_force().0.map(scalar);
+        let (carries, all) = (last.contact_forces.len(), outcome.contacts.len());
         lines.push(format!("contacts: {carries} of {all} carry at the end, force on the planes {x}, {y}, {z} N"));
     }
     let event = |e: &ContactEvent| format!("contact: `{}` {} at t = {} s", e.contact, e.change.name(), scalar(e.t));

@@ -64,9 +64,13 @@ impl<'m> Row<'m> {
         let energy = &row.energy;
         let energies = [energy.kinetic, energy.potential, energy.motor_work, energy.friction_loss, energy.applied_work];
         let vectors = [row.theta, row.dtheta, row.ddtheta, row.tau].into_iter().flatten().copied();
-        let pairs = move || self.contacts.iter().zip(row.contact_forces.as_chunks().0.iter().map(|f| Vec3(*f)));
-        let normal = |(pair, f): (&Pair, Vec3)| -f.dot(pair.up);
-        let forces = pairs().map(normal).chain(pairs().map(move |(pair, f)| (f - pair.up * f.dot(pair.up)).norm()));
+        let contacts = self.contacts.iter().enumerate();
+        let at = row.forces_of(0..self.contacts.len());
+        let pairs =
+            contacts.map(|(k, pair)| (pair, Vec3([at[3 * k], at[3 * k + 1], at[3 * k + 2]]))).collect::<Vec<_>>();
+        let normal = pairs.iter().map(|(pair, f)| -f.dot(pair.up)).collect::<Vec<_>>();
+        let across = pairs.into_iter().map(|(pair, f)| (f - pair.up * f.dot(pair.up)).norm());
+        let forces = normal.into_iter().chain(across);
         std::iter::once(row.t).chain(vectors).chain(energies).chain(forces)
     }
 }

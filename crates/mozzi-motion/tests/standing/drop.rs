@@ -15,8 +15,7 @@ fn places(model: &Model, theta: &[f64]) -> Vec<Vec3> {
 
 /// The force on the ground at row k, N.
 fn carried(run: &Run, k: usize) -> Vec3 {
-    let forces = run.motion.sample(k).contact_forces.chunks(3);
-    forces.fold(Vec3::zero(), |sum, f| sum + Vec3([f[0], f[1], f[2]]))
+    run.motion.sample(k).total_contact_force()
 }
 
 #[test]

@@ -5,9 +5,10 @@ use crate::failure::{LoadWarning, of_loader};
 use crate::model::PyModel;
 use crate::results::named;
 use crate::simulate::contacts::Fixed;
+use mozzi::Vec3;
 use mozzi_report::{Drawing, Meshes, Motion, Touches};
 use mozzi_sim::Trajectory;
-use mozzi_sim::{ContactChange, ContactEvent, Energy, Sample};
+use mozzi_sim::{ContactChange, ContactEvent, ContactForce, Energy, Sample};
 use mozzi_urdf::XacroArguments;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -67,6 +68,12 @@ fn row(table: &[f64], k: usize, width: usize) -> &[f64] {
     &table[k * width..][..width]
 }
 
+/// The contacts of a row of forces that are not 0.
+fn carrying(forces: &[f64]) -> Vec<ContactForce> {
+    let all = forces.as_chunks().0.iter().map(|f| Vec3(*f)).enumerate();
+    all.filter(|(_, f)| *f != Vec3::zero()).map(|(pair, f)| ContactForce { pair, f }).collect()
+}
+
 /// Python's `Trajectory` as the library's.
 fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajectory> {
     let (n, nq, rows) = (model.n(), model.nq(), given.getattr("t")?.len()?);
@@ -95,7 +102,7 @@ fn trajectory(model: &mozzi::Model, given: &Bound<'_, PyAny>) -> PyResult<Trajec
             ddtheta: row(&ddtheta, k, n),
             tau: row(&tau, k, n),
             energy,
-            contact_forces: row(&forces, k, 3 * pairs),
+            contact_forces: &carrying(row(&forces, k, 3 * pairs)),
         });
     }
     Ok(trajectory)

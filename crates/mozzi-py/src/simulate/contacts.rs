@@ -2,11 +2,28 @@
 
 use crate::arguments::Given;
 use crate::failure::of_model;
+use crate::numpy::Fresh;
 use mozzi::{Model, SE3, Vec3};
-use mozzi_sim::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
+use mozzi_sim::{ContactPoint, Contacts, Plane, PlaneMotion, Support, Trajectory};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
+
+/// The forces of all contacts in all rows of motions, a NumPy array whose shape ends with (contacts, 3).
+pub fn forces<'py, 'a>(
+    py: Python<'py>,
+    shape: &[usize],
+    motions: impl Iterator<Item = &'a Trajectory>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut fresh = Fresh::<f64>::new(py, shape)?;
+    let (width, numbers) = (3 * shape[shape.len() - 2], fresh.numbers());
+    for (row, sample) in motions.flat_map(Trajectory::samples).enumerate() {
+        for force in sample.contact_forces {
+            numbers[row * width + 3 * force.pair..][..3].copy_from_slice(&force.f.0);
+        }
+    }
+    Ok(fresh.into_array())
+}
 
 /// Contact points and planes that do not turn, which threads can share.
 #[derive(Default)]

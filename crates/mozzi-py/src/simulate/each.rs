@@ -1,7 +1,7 @@
 //! Many starts, each robot as alone, on all cores: dry friction that sticks, contacts, stops, other methods.
 
 use super::Torque;
-use super::contacts::Fixed;
+use super::contacts::{Fixed, forces};
 use super::many::Table;
 use super::one::{Constant, account};
 use crate::arguments::Given;
@@ -120,7 +120,6 @@ fn trajectories<'py>(
         unsettled: a.unsettled + b.unsettled,
         ..a
     });
-    let forces = runs.iter().flat_map(|run| run.motion.contact_forces.iter().copied()).collect::<Vec<_>>();
     let fields = vec![
         array(py, &[rows], times.collect::<Vec<_>>())?,
         table(model.nq(), &|run| run.motion.theta.clone())?,
@@ -132,7 +131,7 @@ fn trajectories<'py>(
         model.position_names().collect::<Vec<_>>().into_pyobject(py)?,
         model.velocity_names().collect::<Vec<_>>().into_pyobject(py)?,
         robot.clone().into_any(),
-        array(py, &[leading, &[rows, names.len(), 3]].concat(), forces)?,
+        forces(py, &[leading, &[rows, names.len(), 3]].concat(), runs.iter().map(|run| &run.motion))?,
         names.into_pyobject(py)?,
         worst.map_or(Ok(py.None().into_bound(py)), |worst| account(py, worst))?,
     ];

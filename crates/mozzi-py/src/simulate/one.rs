@@ -1,6 +1,7 @@
 //! One start: the motors' torques from Python's arguments, and the motion with its energies as arrays.
 
 use super::Torque;
+use super::contacts::forces;
 use super::watched::{Watched, happened, stopped};
 use crate::arguments::Given;
 use crate::array::Numbers;
@@ -172,7 +173,7 @@ fn trajectory<'py>(
         named(py, "Closing", vec![number(closing.residual)?, number(closing.corrected)?])?,
         method.name().into_pyobject(py)?.into_any(),
         contacts.clone().into_pyobject(py)?,
-        array(py, &[rows, contacts.len(), 3], found.contact_forces.iter().copied())?,
+        forces(py, &[rows, contacts.len(), 3], [&found].into_iter())?,
         contact_events.into_pyobject(py)?,
         match one_sided {
             Some(found) => account(py, found)?,

@@ -47,6 +47,15 @@ pub struct Contacts<'a> {
     pub planes: Vec<Plane<'a>>,
 }
 
+/// The force that a contact point applies to a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce {
+    /// The pair of a point and a plane, in the order of [`Contacts::names`].
+    pub pair: usize,
+    /// In {s}, N.
+    pub f: Vec3,
+}
+
 /// A contact that begins or ceases to carry or to slide.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactEvent {
@@ -175,6 +184,22 @@ impl Contacts<'_> {
         (0..self.points.len()).flat_map(move |point| (0..self.planes.len()).map(move |plane| self.name(point, plane)))
     }
 
+    /// The point of a pair.
+    ///
+    /// # Panics
+    /// When there is no such pair.
+    pub fn point(&self, pair: usize) -> &ContactPoint {
+        &self.points[pair / self.planes.len()]
+    }
+
+    /// The plane of a pair.
+    ///
+    /// # Panics
+    /// When there is no such pair.
+    pub fn plane(&self, pair: usize) -> &Plane<'_> {
+        &self.planes[pair % self.planes.len()]
+    }
+
     pub(crate) fn name(&self, point: usize, plane: usize) -> String {
         let point = &self.points[point].name;
         if self.planes.len() == 1 { point.clone() } else { format!("{point} on {}", self.planes[plane].name) }
@@ -185,26 +210,22 @@ impl Contacts<'_> {
     /// # Panics
     /// When θ is not nq long.
     pub fn gaps(&self, model: &Model, t: f64, theta: &[f64]) -> Vec<f64> {
-        self.touches(model, t, theta).into_iter().map(|(touch, _)| touch.gap).collect()
-    }
-
-    /// For each pair, in the order of [`gaps`](Self::gaps), a frame in {s}: its origin is the robot's point nearest to
-    /// the plane, its axes are the plane's.
-    ///
-    /// # Panics
-    /// When θ is not nq long.
-    pub fn frames(&self, model: &Model, t: f64, theta: &[f64]) -> Vec<SE3> {
-        self.touches(model, t, theta).into_iter().map(|(touch, R)| SE3 { R, p: touch.at }).collect()
-    }
-
-    /// Each pair, with the orientation of its plane.
-    fn touches(&self, model: &Model, t: f64, theta: &[f64]) -> Vec<(Touch, SO3)> {
         let surfaces: Vec<Surface> = self.planes.iter().map(|plane| plane.at(t)).collect();
         let of_point = |point: &ContactPoint| {
             let T = mozzi::kinematics::forward_kinematics(model, theta, point.frame);
-            surfaces.iter().map(|surface| (surface.touch(point, T), surface.T.R)).collect::<Vec<_>>()
+            surfaces.iter().map(|surface| surface.touch(point, T).gap).collect::<Vec<_>>()
         };
         self.points.iter().flat_map(of_point).collect()
+    }
+
+    /// The frame of a pair in {s}: its origin is the robot's point nearest to the plane, its axes are the plane's.
+    ///
+    /// # Panics
+    /// When there is no such pair, or θ is not nq long.
+    pub fn frame(&self, model: &Model, t: f64, theta: &[f64], pair: usize) -> SE3 {
+        let (point, surface) = (self.point(pair), self.plane(pair).at(t));
+        let T = mozzi::kinematics::forward_kinematics(model, theta, point.frame);
+        SE3 { R: surface.T.R, p: surface.touch(point, T).at }
     }
 
     /// Checks that no contact point starts within a plane.

@@ -132,7 +132,7 @@ pub(crate) fn bisect_until(
     let rises = a.1 < 0.0;
     let beyond = |value: f64| if rises { value >= 0.0 } else { value <= 0.0 };
     // the zero is between the newest point and `other`
-    let (mut newest, mut other, mut part) = (b, a, 0.5_f64);
+    let (mut newest, mut other, mut part) = (b, a, b.1 / (b.1 - a.1));
     for _ in 0..200 {
         let least = width.max(4.0 * f64::EPSILON * newest.0.abs().max(other.0.abs())) / (newest.0 - other.0).abs();
         if least >= 1.0 {

@@ -9,7 +9,7 @@ pub use account::OneSidedAccount;
 pub(crate) use rows::{Key, System};
 
 use crate::Error;
-use crate::contacts::{Contacts, Surface};
+use crate::contacts::{ContactForce, Contacts, Surface};
 use crate::factored_mass::FactoredMass;
 use crate::one_sided::{Law, Problem, solve};
 use crate::{Friction, Options, Policy};
@@ -23,8 +23,9 @@ use nalgebra::{DMatrix, DVector};
 use near::Cloud;
 use rows::Touching;
 
-/// The residual that is sought, relative to the largest of the velocities b, or to this.
-const TOLERANCE: f64 = 1e-12;
+/// The residuals that are sought, and that are accepted rather than a long search, relative to the largest of the
+/// velocities b, or to `LEAST`, m/s.
+const TOLERANCES: [f64; 2] = [1e-12, 1e-6];
 const LEAST: f64 = 1e-4;
 /// A residual above this is reported as unsolved, m/s.
 const UNSOLVED: f64 = 1e-6;
@@ -52,8 +53,8 @@ pub(crate) struct Impulses<'r> {
     reach: f64,
     pub memory: Memory,
     pub account: OneSidedAccount,
-    /// The force that each pair of a point and a plane applies to the plane, in {s}: three numbers each, N.
-    pub forces: Vec<f64>,
+    /// The forces on the planes that are not 0, by their pairs.
+    pub forces: Vec<ContactForce>,
     /// That of the last system.
     pub mass: FactoredMass<'r>,
 }
@@ -164,7 +165,7 @@ impl<'r> Impulses<'r> {
             reach: (g * h * h).max(NEAR),
             memory: Memory::default(),
             account: OneSidedAccount::default(),
-            forces: vec![0.0; 3 * contacts.pairs()],
+            forces: Vec::new(),
             mass: FactoredMass::new(model),
         }))
     }
@@ -207,10 +208,11 @@ impl<'r> Impulses<'r> {
                 _ => {}
             }
         }
-        let tolerance = TOLERANCE * b.amax().max(LEAST);
+        let size = b.amax().max(LEAST);
+        let tolerances = TOLERANCES.map(|tolerance| tolerance * size);
         let G = core::mem::replace(&mut system.G, DMatrix::zeros(0, 0));
         let mut problem = Problem { G, b, laws: core::mem::take(&mut system.laws) };
-        let mut found = solve(&problem, guess, tolerance);
+        let mut found = solve(&problem, guess, tolerances);
         self.account.add(&found);
         let mut shifted = vec![false; system.rows.len()];
         for _ in 0..SHIFTS {
@@ -227,7 +229,7 @@ impl<'r> Impulses<'r> {
             if !changes {
                 break;
             }
-            found = solve(&problem, &found.p, tolerance);
+            found = solve(&problem, &found.p, tolerances);
             self.account.add(&found);
         }
         let u = &problem.G * &found.p + &free;
@@ -242,7 +244,6 @@ impl<'r> Impulses<'r> {
         let touched = core::mem::take(touching);
         carrying.clear();
         warm.clear();
-        self.forces.fill(0.0);
         for &(key, first, law) in &system.rows {
             let mut force = [0.0; 3];
             (0..law.rows()).for_each(|k| force[k] = solved.p[first + k] / h);
@@ -320,11 +321,14 @@ impl<'r> Impulses<'r> {
 
     /// The contact forces in {s}, from those along the rows.
     fn set_forces(&mut self, system: &System, force: &DVector<f64>) {
-        for &Touching { pair: (point, plane), first, axes, .. } in &system.touches {
-            let total = axes[0] * force[first] + axes[1] * force[first + 1] + axes[2] * force[first + 2];
-            let pair = point * self.contacts.planes.len() + plane;
-            self.forces[3 * pair..3 * pair + 3].copy_from_slice(&total.0);
-        }
+        let planes = self.contacts.planes.len();
+        let of_pair = |&Touching { pair: (point, plane), first, axes, .. }: &Touching| {
+            let f = axes[0] * force[first] + axes[1] * force[first + 1] + axes[2] * force[first + 2];
+            (f != Vec3::zero()).then_some(ContactForce { pair: point * planes + plane, f })
+        };
+        self.forces.clear();
+        self.forces.extend(system.touches.iter().filter_map(of_pair));
+        self.forces.sort_unstable_by_key(|force| force.pair);
     }
 
     /// The planes at a time.

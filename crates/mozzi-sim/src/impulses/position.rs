@@ -19,8 +19,11 @@ const CLOSED: f64 = 1e-13;
 const CORRECTIONS: usize = 3;
 /// Joints this near to a limit are at it, rad or m.
 const AT_LIMIT: f64 = 1e-11;
-/// G is made regular by adding this part of its diagonal, because rows may be redundant.
-const REGULAR: f64 = 1e-10;
+/// G is made regular by adding a part of its diagonal, because rows may be redundant, or more than the joints can meet:
+/// the first of these with which the errors shrink and the robot moves at most `FARTHEST` times as far, in M's norm, as
+/// it would for each row alone.
+const REGULAR: [f64; 5] = [1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
+const FARTHEST: f64 = 10.0;
 /// And relative to its largest entry: a row of a loop that holds anyway is rounding.
 const NOISE: f64 = 1e-14;
 
@@ -46,29 +49,38 @@ impl Impulses<'_> {
         }
         self.move_anchors(h);
         self.set_anchors(t, theta, Some(&stopped));
-        let n = self.model.n();
-        let (mut last, mut is_factored, mut changes) = (f64::INFINITY, false, false);
-        for _ in 0..CORRECTIONS {
-            let (open, errors) = self.open_rows(t, theta);
-            let size = errors.amax();
-            if size < CLOSED || !(size < 0.5 * last) {
+        let (mut open, mut errors) = self.open_rows(t, theta);
+        let (mut changes, mut contracts) = (false, errors.amax() >= CLOSED);
+        for correction in 0..CORRECTIONS {
+            if !contracts || errors.amax() < CLOSED {
                 break;
             }
-            last = size;
-            if !is_factored {
+            if correction == 0 {
                 self.mass.factor(theta, 0.0, &[])?;
-                is_factored = true;
             }
             let J = self.jacobian(theta, open);
-            let mut G = self.delassus(&J);
+            let G = self.delassus(&J);
             let least = NOISE * G.diagonal().amax() + f64::MIN_POSITIVE;
-            (0..G.nrows()).for_each(|r| G[(r, r)] = G[(r, r)] * (1.0 + REGULAR) + least);
-            let Some(G) = G.cholesky() else { break };
-            let mut change = J.tr_mul(&G.solve(&errors));
-            self.mass.divide(change.as_mut_slice());
-            debug_assert!(change.len() == n);
-            integrate(self.model, theta, change.as_slice(), 1.0);
-            changes = true;
+            // as if each row were alone: δᵀMδ is then Σ e²/G_rr
+            let size = |e: &DVector<f64>| (0..e.len()).map(|r| e[r] * e[r] / (G[(r, r)] + least)).sum::<f64>();
+            let before = size(&errors);
+            let smaller = REGULAR.iter().find_map(|regular| {
+                let mut regular_G = G.clone();
+                (0..G.nrows()).for_each(|r| regular_G[(r, r)] += G[(r, r)] * regular + least);
+                let p = regular_G.cholesky()?.solve(&errors);
+                if !(p.dot(&(&G * &p)) <= FARTHEST * FARTHEST * before) {
+                    return None;
+                }
+                let (mut change, mut to) = (J.tr_mul(&p), theta.to_vec());
+                self.mass.divide(change.as_mut_slice());
+                integrate(self.model, &mut to, change.as_slice(), 1.0);
+                let (open, errors) = self.open_rows(t, &to);
+                (size(&errors) < before).then_some((to, open, errors))
+            });
+            let Some((to, still_open, left)) = smaller else { break };
+            theta.copy_from_slice(&to);
+            (changes, contracts) = (true, size(&left) < 0.25 * before);
+            (open, errors) = (still_open, left);
         }
         self.set_anchors(t, theta, None);
         self.put_at_limits(theta);

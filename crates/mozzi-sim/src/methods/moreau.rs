@@ -31,10 +31,10 @@ const UNSETTLED: f64 = 1e-6;
 const SHORTEST: [f64; 2] = [1.0 / 64.0, 1.0 / 8.0];
 /// A step is divided at most this often.
 const DIVISIONS: usize = 8;
-/// Joints slower than this are at rest, rad/s or m/s.
-const AT_REST: f64 = 1e-9;
-/// How close to 0 the speed is brought at which a joint comes to rest, rad/s or m/s.
-const RESTS: f64 = 1e-11;
+/// The time at which a joint comes to rest is found in fewer tries, unless its speed jumps: by an impact.
+const TRIES: usize = 8;
+/// Joints slower than this are at rest, relative to the largest of 1 and |θ̇|: velocities are not known better.
+const AT_REST: f64 = 10.0 * SETTLED;
 
 /// Memory of the step.
 pub(crate) struct Moreau {
@@ -130,9 +130,10 @@ impl Moreau {
                 commit(impulses, state, &trial);
                 break;
             };
+            let at_rest = at_rest(state);
             commit(impulses, state, &trial_there);
             for &j in &stopping {
-                if state.dtheta[j].abs() < AT_REST {
+                if state.dtheta[j].abs() < at_rest {
                     state.dtheta[j] = 0.0;
                 }
             }
@@ -173,21 +174,28 @@ impl Moreau {
             speeds.fold(f64::INFINITY, f64::min)
         };
         let start = least(&state.dtheta);
-        let (mut failure, mut last) = (None, None);
-        let mut speed = |s: f64| match self.trial(equation, impulses, state, s, stopping) {
-            Ok(trial) => least(&last.insert(trial).to.dtheta),
-            Err(error) => {
-                failure.get_or_insert(error);
-                f64::NAN
+        let rests = at_rest(state);
+        let (mut failure, mut last, mut tries) = (None, None, 0);
+        let mut speed = |s: f64| {
+            tries += 1;
+            if tries > TRIES {
+                return 0.0; // ends the search
+            }
+            match self.trial(equation, impulses, state, s, stopping) {
+                Ok(trial) => least(&last.insert(trial).to.dtheta),
+                Err(error) => {
+                    failure.get_or_insert(error);
+                    f64::NAN
+                }
             }
         };
         let end = speed(h);
-        let s = if end <= 0.0 { bisect_until([RESTS, 1e-9 * h], &mut speed, (0.0, start), (h, end)) } else { f64::NAN };
+        let s = if end <= 0.0 { bisect_until([rests, 1e-9 * h], &mut speed, (0.0, start), (h, end)) } else { f64::NAN };
         if let Some(error) = failure {
             return Err(error);
         }
-        if !(s > 0.0) {
-            return Ok(None); // the joints come to rest only by a force that another law produces
+        if !(s > 0.0) || tries > TRIES {
+            return Ok(None); // the joints come to rest only by a force that another law produces, or their speed jumps
         }
         match last {
             Some(trial) if trial.h == s => Ok(Some((s, trial))),
@@ -277,6 +285,11 @@ fn is_too_long(error: &Error) -> bool {
     matches!(error, Error::Opened { .. } | Error::Diverged { .. })
 }
 
+/// The speed below which a joint is at rest.
+fn at_rest(state: &Phase) -> f64 {
+    AT_REST * state.dtheta.iter().fold(1.0, |most: f64, rate| most.max(rate.abs()))
+}
+
 /// The largest difference, relative to 1 + the largest number.
 fn apart(a: &[f64], b: &[f64]) -> f64 {
     let size = b.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
@@ -355,7 +368,7 @@ fn end_of(model: &Model, state: &Phase, v: &[f64], after: &[f64], h: f64, to: &m
 /// The joints with dry friction that move at the start and are at rest, or move back, at the end, but for those that a
 /// stop brings to rest.
 fn stopping(trial: &Trial, state: &Phase) -> Vec<usize> {
-    let mut found = Vec::new();
+    let (mut found, at_rest) = (Vec::new(), at_rest(state));
     for &(key, first, law) in &trial.system.rows {
         let (Key::Dry(j), Law::Dry { most }) = (key, law) else { continue };
         let stops = |&(key, row, _): &(Key, usize, Law)| {
@@ -365,7 +378,7 @@ fn stopping(trial: &Trial, state: &Phase) -> Vec<usize> {
             continue;
         }
         let rests = trial.solved.p[first].abs() < most;
-        if state.dtheta[j].abs() > AT_REST && (rests || trial.to.dtheta[j] * state.dtheta[j] < 0.0) {
+        if state.dtheta[j].abs() > at_rest && (rests || trial.to.dtheta[j] * state.dtheta[j] < 0.0) {
             found.push(j);
         }
     }

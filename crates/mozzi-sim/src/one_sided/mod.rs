@@ -73,8 +73,8 @@ const FAR: [f64; 25] = {
 };
 /// Sweeps before the last method.
 const SWEEPS: usize = 20;
-/// A residual of this many tolerances is accepted where Newton's method does not give more.
-const ENOUGH: f64 = 1e4;
+/// Sweeps follow where Newton's method leaves more than this many times the residual that is sought.
+const FAR_OFF: f64 = 1e4;
 /// Iterations of the last method between Newton steps, and the number of such rounds.
 const ADMM_CHUNK: usize = 40;
 const ADMM_ROUNDS: usize = 15;
@@ -141,12 +141,12 @@ fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
     most
 }
 
-/// Impulses from a guess of m numbers, whose residual is at most `tolerance`; at most 10⁴ times that where Newton's
-/// method does not give more; or the best that were found, after at most 600 iterations of the last method.
+/// Impulses from a guess of m numbers, whose residual is at most `sought`; at most `enough` where Newton steps and
+/// sweeps do not give more; or the best that were found, after at most 600 iterations of the last method.
 ///
 /// # Panics
 /// When the guess is not m long.
-pub fn solve(problem: &Problem, guess: &DVector<f64>, tolerance: f64) -> Solution {
+pub fn solve(problem: &Problem, guess: &DVector<f64>, [sought, enough]: [f64; 2]) -> Solution {
     let m = problem.b.len();
     assert!(guess.len() == m, "the guess has {} entries, expected {m}", guess.len());
     let mut found = Solution { p: guess.clone(), residual: 0.0, newton_steps: 0, sweeps: 0, admm_iterations: 0 };
@@ -163,27 +163,27 @@ pub fn solve(problem: &Problem, guess: &DVector<f64>, tolerance: f64) -> Solutio
     }
     let start = of.best.clone();
     let mut newton = |of: &mut Scaled, p: DVector<f64>, weights: &[f64]| {
-        found.newton_steps += newton::newton(of, p, weights, tolerance);
+        found.newton_steps += newton::newton(of, p, weights, sought);
     };
     newton(&mut of, start, &NEAR);
-    if of.residual > tolerance {
+    if of.residual > sought {
         let p = of.best.clone();
         newton(&mut of, p, &FAR);
     }
-    if of.residual > ENOUGH * tolerance {
+    if of.residual > enough.min(FAR_OFF * sought) {
         let mut p = of.best.clone();
-        found.sweeps = sweeps::sweep(&of.problem, &mut p, tolerance, SWEEPS);
+        found.sweeps = sweeps::sweep(&of.problem, &mut p, sought, SWEEPS);
         of.offer(&p);
         newton(&mut of, p, &NEAR);
     }
-    if of.residual > ENOUGH * tolerance {
+    if of.residual > enough {
         let mut method = admm::Admm::new(&of.problem, &of.best);
         for _ in 0..ADMM_ROUNDS {
-            found.admm_iterations += method.iterate(&of.problem, tolerance, ADMM_CHUNK);
+            found.admm_iterations += method.iterate(&of.problem, sought, ADMM_CHUNK);
             let p = method.impulses().clone();
             of.offer(&p);
             newton(&mut of, p, &FAR);
-            if of.residual <= ENOUGH * tolerance || method.is_done() {
+            if of.residual <= enough || method.is_done() {
                 break;
             }
         }

@@ -2,7 +2,9 @@
 
 use super::robots::by;
 use mozzi::{Description, Model, SE3, Solid, SpatialInertia, Sym3, Twist, Vec3};
-use mozzi_sim::{ContactPoint, Contacts, Method, Options, Plane, PlaneMotion, Run, Simulation, Support, Zero};
+use mozzi_sim::{
+    ContactPoint, Contacts, Method, Options, Plane, PlaneMotion, Run, Simulation, Support, Thinned, Trajectory, Zero,
+};
 
 const G: f64 = 9.81;
 pub const RADIUS: f64 = 0.1;
@@ -54,6 +56,26 @@ pub fn bounced(t: f64, e: f64) -> f64 {
         v *= e;
     }
     0.0
+}
+
+#[test]
+fn rows_keep_the_forces_that_act() {
+    let model = ball();
+    let plane = |name, z| Plane::fixed(name, SE3::translation([0.0, 0.0, z]));
+    let point = contact(&model, "ball", Support::Sphere { radius: RADIUS }, 0.5, 0.0);
+    let contacts = Contacts { points: vec![point], planes: vec![plane("far below", -5.0), plane("ground", 0.0)] };
+    let start = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, RADIUS + 0.01];
+    let simulation = Simulation { contacts, ..Simulation::new(by(Method::MoreauJean, 0.2, 1e-3)) };
+    let mut both = (Thinned::new(&model, 30), Trajectory::new(&model));
+    let going = |_| std::ops::ControlFlow::Continue(());
+    simulation.stream(&model, &start, &[0.0; 6], Zero, &mut both, going).expect("a motion");
+    let (thinned, whole) = (both.0.into_trajectory(), both.1);
+    let stride = mozzi_sim::stride(whole.len(), 30);
+    assert!(thinned.samples().eq(whole.samples().step_by(stride)) && thinned.len() > 10);
+    assert_eq!((whole.carrying(), whole.sample(0).contact_forces.len()), (vec![1], 0));
+    let last = thinned.last();
+    assert_eq!(last.forces_of([0, 1]), [[0.0; 3], last.total_contact_force().0].concat());
+    assert!((last.total_contact_force() + Vec3([0.0, 0.0, 0.5 * G])).norm() < 1e-9);
 }
 
 #[test]
@@ -171,7 +193,7 @@ fn planes_move() {
     let start = [[0.0, 0.0, RADIUS], [0.0; 3], [0.0; 3]];
     let run = rolling(&model, plane, 0.5, 0.0, start, by(Method::Automatic, 1.0, 1e-3));
     let last = run.motion.last();
-    let weight = -last.contact_forces[2];
+    let weight = -last.total_contact_force().0[2];
     println!(
         "lift: height error {:.1e} m, speed error {:.1e} m/s, force error {:.1e} N, work {:.6} J",
         last.theta[6] - RADIUS - 0.5,

@@ -61,13 +61,7 @@ fn a_box_sticks() {
             let account = run.one_sided.expect("contacts");
             println!("{points} points, {:20}: moved {moved:.1e} m, gap {gap:.1e} m, {account:?}", method.name());
             assert!(moved <= 1e-12 && gap < 1e-12 && account.largest_residual < 1e-9);
-            let force: Vec3 = run
-                .motion
-                .last()
-                .contact_forces
-                .chunks(3)
-                .map(|f| Vec3([f[0], f[1], f[2]]))
-                .fold(Vec3::zero(), |a, b| a + b);
+            let force = run.motion.last().total_contact_force();
             assert!((force - Vec3([0.0, 0.0, -4.0 * G])).norm() < 1e-9 * 4.0 * G, "{force:?}");
         }
     }
@@ -167,7 +161,7 @@ fn thrown(seed: u64, is_thrown: bool) -> (Run, f64) {
         Simulation { contacts, ..Simulation::new(by(Method::Automatic, if is_thrown { 3.0 } else { 2.0 }, 1e-3)) };
     let run = simulation.run(&model, &theta, &dtheta, Zero).expect("a motion");
     let last = run.motion.last();
-    let force = last.contact_forces.chunks(3).map(|f| Vec3([f[0], f[1], f[2]])).fold(Vec3::zero(), |a, b| a + b);
+    let force = last.total_contact_force();
     let error = (force - Vec3([0.0, 0.0, -4.0 * G])).norm() / (4.0 * G);
     (run, error)
 }

@@ -1,7 +1,8 @@
 //! Random robots dropped on the ground: every simulation ends, and friction never gives energy.
 
 use super::robots::by;
-use mozzi::{Model, Vec3, testing};
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Description, Model, SE3, ScrewAxis, Solid, SpatialInertia, Sym3, Vec3, testing};
 use mozzi_sim::{ContactPoint, Contacts, Method, Options, Plane, Policy, Simulation, Zero};
 
 /// A floating tree with friction, and a contact point at each link's origin.
@@ -51,4 +52,30 @@ fn a_thousand_drops_end_and_lose_energy() {
          {worst:.1e} of the kinetic energy, drift {drift:.1e}, lifted {lifted:.1e}, {halvings} halvings, {unsettled} unsettled"
     );
     assert!(worst < 1e-4 && drift < 2e-2 && unsolved == 0);
+}
+
+#[test]
+fn positions_are_not_put_right_by_throwing_light_links() {
+    // a box on four corners, and a knob whose point is 10 µm beside its hinge and 10 µm too deep: a turn would lift it
+    let knob = SpatialInertia { mass: 0.01, mc: Vec3::zero(), I: Sym3::diagonal(1e-6, 1e-6, 1e-6) };
+    let turn = JointKind::Screw(ScrewAxis::new([1.0, 0.0, 0.0], [0.0; 3]).expect("unit"));
+    let model = Description::new("box with a knob")
+        .link("box", Solid::Box([0.1; 3]).inertia(1.0))
+        .link("knob", knob)
+        .joint(Joint::new("hinge", "box", "knob", SE3::translation([0.0, 0.0, -0.05]), turn))
+        .floating()
+        .build()
+        .expect("sound");
+    let point = |name: &str, link: &str, at| ContactPoint::new(name, model.frame(link).expect("there"), Vec3(at), 0.5);
+    let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let mut points = corners.map(|[x, y]| point("corner", "box", [0.05 * x, 0.05 * y, -0.05])).to_vec();
+    points.push(point("knob", "knob", [0.0, 1e-5, -1e-5]));
+    let contacts = Contacts { points, planes: vec![Plane::ground()] };
+    let simulation = Simulation { contacts, ..Simulation::new(by(Method::Automatic, 0.2, 1e-3)) };
+    let start = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0];
+    let run = simulation.run(&model, &start, &[0.0; 7], Zero).expect("a motion");
+    let turned = run.motion.samples().map(|row| row.theta[7].abs()).fold(0.0, f64::max);
+    let lifted = run.one_sided.expect("contacts").lifted;
+    println!("the hinge turns by {turned:.1e} rad, lifted by {lifted:.1e} J");
+    assert!(turned < 0.1 && lifted.abs() < 1e-3);
 }

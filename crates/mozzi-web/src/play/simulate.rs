@@ -6,7 +6,7 @@ use super::motors::motors;
 use super::push::Push;
 use crate::robot::Robot;
 use mozzi::{FrameId, Wrench};
-use mozzi_sim::{ContactPoint, Contacts, Error, Input, Method, Options, Plane, Policy, Simulation};
+use mozzi_sim::{ContactForce, ContactPoint, Contacts, Error, Input, Method, Options, Plane, Policy, Simulation};
 use serde_json::{Value, json};
 
 /// Motors, and the mouse if it pushes.
@@ -74,13 +74,12 @@ pub fn step(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         None => simulation.run(model, &theta, &dtheta, input()?).map_err(within_ground)?,
     };
     let (first, last) = (run.motion.sample(0), run.motion.last());
-    // each point and the only plane
-    let touched = simulation.contacts.frames(model, 0.0, last.theta);
-    let touches = simulation.contacts.points.iter().zip(&touched).zip(last.contact_forces.as_chunks::<3>().0);
-    let touches: Value = touches
-        .filter(|(_, f)| **f != [0.0; 3])
-        .map(|((point, T), f)| json!({ "frame": model.frame_name(point.frame), "p": T.p.0, "f": f }))
-        .collect();
+    let contacts = &simulation.contacts;
+    let touch = |&ContactForce { pair, f }: &ContactForce| {
+        let p = contacts.frame(model, 0.0, last.theta, pair).p;
+        json!({ "frame": model.frame_name(contacts.point(pair).frame), "p": p.0, "f": f.0 })
+    };
+    let touches: Value = last.contact_forces.iter().map(touch).collect();
     let pushed = match &push {
         Some(push) => Some(push.force(last.theta, last.dtheta).map_err(|error| error.to_string())?),
         None => None,
