@@ -3,7 +3,7 @@
 
 use super::Problem;
 use mozzi::scalar::Scalar;
-use nalgebra::{DMatrix, DVector, Dyn, LU};
+use nalgebra::{DVector, Dyn, SymmetricEigen};
 
 /// The proximal weight, relative to the largest eigenvalue.
 const PROXIMAL: f64 = 1e-9;
@@ -18,22 +18,22 @@ pub(super) struct Admm {
     rho: f64,
     /// The largest eigenvalue of G.
     largest: f64,
-    factors: LU<f64, Dyn, Dyn>,
+    spectrum: SymmetricEigen<f64, Dyn>,
     iterations: usize,
     done: bool,
 }
 
 impl Admm {
     pub fn new(problem: &Problem, guess: &DVector<f64>) -> Self {
-        let values = problem.G.clone().symmetric_eigenvalues();
+        let spectrum = problem.G.clone().symmetric_eigen();
+        let values = &spectrum.eigenvalues;
         let largest = values.max().max(f64::MIN_POSITIVE);
         let positive = values.iter().filter(|x| **x > 1e-9 * largest).fold(largest, |least, x| least.min(*x));
         let rho = Scalar::sqrt(positive.max(1e-3 * largest) * largest);
         let mut y = guess.clone();
         problem.project(&mut y);
-        let factors = shifted(problem, PROXIMAL * largest + rho);
         let z = problem.velocity(guess);
-        Admm { p: guess.clone(), y, z, rho, largest, factors, iterations: 0, done: false }
+        Admm { p: guess.clone(), y, z, rho, largest, spectrum, iterations: 0, done: false }
     }
 
     /// The latest impulses that are admissible.
@@ -54,11 +54,7 @@ impl Admm {
             for (first, law) in problem.blocks() {
                 right[first] -= law.shift(&self.z.as_slice()[first..first + law.rows()]);
             }
-            if !self.factors.solve_mut(&mut right) {
-                self.done = true;
-                return done;
-            }
-            self.p = right;
+            self.p = self.divided(&right, eta + self.rho);
             let before = core::mem::replace(&mut self.y, &self.p - &self.z / self.rho);
             problem.project(&mut self.y);
             let gap = &self.p - &self.y;
@@ -76,16 +72,16 @@ impl Admm {
                     _ => continue,
                 };
                 self.rho *= factor;
-                self.factors = shifted(problem, eta + self.rho);
             }
         }
         most
     }
-}
 
-/// G + shift 1, factored.
-fn shifted(problem: &Problem, shift: f64) -> LU<f64, Dyn, Dyn> {
-    let mut G: DMatrix<f64> = problem.G.clone();
-    (0..G.nrows()).for_each(|r| G[(r, r)] += shift);
-    G.lu()
+    /// (G + shift 1)⁻¹x = Q(Λ + shift 1)⁻¹Qᵀx.
+    fn divided(&self, x: &DVector<f64>, shift: f64) -> DVector<f64> {
+        let SymmetricEigen { eigenvectors: Q, eigenvalues } = &self.spectrum;
+        let mut y = Q.tr_mul(x);
+        y.zip_apply(eigenvalues, |y, value| *y /= value.max(0.0) + shift);
+        Q * y
+    }
 }

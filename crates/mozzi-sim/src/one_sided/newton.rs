@@ -12,10 +12,14 @@ use super::{Law, Problem};
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// One step for each ε, from p. Returns their number; the best result is kept in `of`.
+/// So many steps without a better result are the last.
+const STALLS: usize = 12;
+
+/// A step for each ε, from p, as long as results get better. Returns their number; the best is kept in `of`.
 pub(super) fn newton(of: &mut Scaled, mut p: DVector<f64>, weights: &[f64], tolerance: f64) -> usize {
+    let mut improved = 0;
     for (done, &weight) in weights.iter().enumerate() {
-        if of.residual <= tolerance {
+        if of.residual <= tolerance || done > improved + STALLS {
             return done;
         }
         let Some(step) = step(&of.problem, &p, &of.best, weight) else { return done };
@@ -23,7 +27,9 @@ pub(super) fn newton(of: &mut Scaled, mut p: DVector<f64>, weights: &[f64], tole
         if !p.iter().all(|x| x.is_finite()) {
             return done + 1;
         }
-        of.offer(&p);
+        if of.offer(&p) {
+            improved = done;
+        }
     }
     weights.len()
 }

@@ -36,14 +36,16 @@ impl Scaled {
         Scaled { problem, root, best, residual }
     }
 
-    /// Keeps the admissible impulses next to p if they are better.
-    pub fn offer(&mut self, p: &DVector<f64>) {
+    /// Keeps the admissible impulses next to p if they are better: true if so.
+    pub fn offer(&mut self, p: &DVector<f64>) -> bool {
         let mut p = p.clone();
         self.problem.project(&mut p);
         let residual = residual_with(&self.problem, &self.root, &p);
-        if residual < self.residual || self.residual.is_nan() {
+        let is_better = residual < self.residual || self.residual.is_nan();
+        if is_better {
             (self.best, self.residual) = (p, residual);
         }
+        is_better
     }
 
     /// The best impulses, not scaled.
