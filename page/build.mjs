@@ -4,8 +4,8 @@ import { createHash } from "node:crypto";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
+import { gzip } from "./gzip.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const text = (file) => readFileSync(join(here, file), "utf8").replaceAll("\r\n", "\n");
@@ -55,5 +55,5 @@ ${text(page.wasm).trim()}
 -->`;
 const parts = { policy, style, script };
 const html = text(page.html).replace(/\{\{(policy|style|script)\}\}/g, (_, name) => parts[name]);
-writeFileSync(file, gzipSync(html.replace("<!doctype html>", () => `<!doctype html>\n${notice}`), { level: 9 }));
+writeFileSync(file, await gzip(Buffer.from(html.replace("<!doctype html>", () => `<!doctype html>\n${notice}`))));
 console.log(`${file}: ${html.length} bytes, three.js ${version}`);

@@ -46,6 +46,7 @@ pub use fit::fit_html;
 pub use fit_json::fit_json;
 pub use markup::escaped;
 pub use motion::Motion;
+pub use page::unpacked;
 pub use play::{Played, lesson_html, lessons, play_html};
 pub use touches::{Touches, shown_contacts};
 

@@ -27,7 +27,7 @@ pub fn filled(page: &[u8], wasm: &[u8], title: &str, data: &Value) -> String {
     [head, &title, middle, &base64::encode(wasm), last, &data, tail].concat()
 }
 
-/// The text of a bundle; the tests read both, so that none is empty.
+/// A gzipped text; empty if it is none. Those of the program are read by tests.
 pub fn unpacked(page: &[u8]) -> String {
     let mut text = String::new();
     GzDecoder::new(page).read_to_string(&mut text).map(|_| text).unwrap_or_default()

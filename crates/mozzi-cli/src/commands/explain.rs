@@ -7,8 +7,8 @@ use mozzi_urdf::{explain, mjcf, nearest_code, remedy, sdf, why};
 use std::collections::BTreeSet;
 
 /// The examples of all codes, written by the test of mozzi-urdf that writes docs/diagnostics: `=== CODE SEVERITY`, and
-/// the text to print.
-const EXAMPLES: &str = include_str!("explain_examples.txt");
+/// the text to print; gzipped.
+const EXAMPLES: &[u8] = include_bytes!("explain_examples.txt.gz");
 
 #[derive(Args, Debug)]
 pub struct ExplainArguments {
@@ -56,10 +56,12 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
 }
 
 /// The severity and the examples of a code of one language; those of URDF or MJCF if the language shares the code.
-fn example(full: &str) -> Option<(&'static str, &'static str)> {
+fn example(full: &str) -> Option<(String, String)> {
+    let examples = mozzi_report::unpacked(EXAMPLES);
     let short = full.rsplit("::").next().unwrap_or(full);
     let of = |code: &str| {
-        EXAMPLES.split("=== ").find_map(|part| part.strip_prefix(code)?.strip_prefix(' ')?.split_once('\n'))
+        let one = examples.split("=== ").find_map(|part| part.strip_prefix(code)?.strip_prefix(' ')?.split_once('\n'));
+        one.map(|(severity, text)| (severity.to_string(), text.to_string()))
     };
     of(full).or_else(|| ["urdf", "mjcf"].iter().find_map(|language| of(&format!("mozzi::{language}::{short}"))))
 }

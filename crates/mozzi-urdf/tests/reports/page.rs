@@ -4,9 +4,12 @@
 //! `cargo xtask docs`, or `MOZZI_BLESS=1 cargo test -p mozzi-urdf reports`, rewrites them.
 
 use super::{Broken, excerpt, folder, mends, models, report, robots, sdf_models};
+use flate2::Compression;
+use flate2::read::{GzDecoder, GzEncoder};
 use mozzi_urdf::{Severity, codes, explain, mjcf, remedy, sdf, why};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 const HEAD: &str = "\
@@ -224,8 +227,26 @@ fn pages() -> BTreeMap<String, String> {
         pages.insert(format!("docs/diagnostics/{code}.md"), page);
     }
     pages.insert("docs/diagnostics.md".to_string(), index);
-    pages.insert("crates/mozzi-cli/src/commands/explain_examples.txt".to_string(), examples);
+    pages.insert("crates/mozzi-cli/src/commands/explain_examples.txt.gz".to_string(), examples);
     pages
+}
+
+/// Writes a text, gzipped if its name says so.
+fn write(path: &Path, text: &str) {
+    let mut bytes = text.as_bytes().to_vec();
+    if path.extension().is_some_and(|ending| ending == "gz") {
+        bytes.clear();
+        GzEncoder::new(text.as_bytes(), Compression::best()).read_to_end(&mut bytes).expect("in memory");
+    }
+    std::fs::write(path, bytes).expect("a writable folder");
+}
+
+fn read(path: &Path) -> std::io::Result<String> {
+    let mut text = String::new();
+    match path.extension().is_some_and(|ending| ending == "gz") {
+        true => GzDecoder::new(std::fs::File::open(path)?).read_to_string(&mut text).map(|_| text),
+        false => std::fs::read_to_string(path),
+    }
 }
 
 #[test]
@@ -236,10 +257,10 @@ fn the_pages_of_all_codes_are_current() {
     let bless = std::env::var_os("MOZZI_BLESS").is_some();
     if bless {
         std::fs::create_dir_all(&folder_of_pages).expect("a writable folder");
-        pages.iter().for_each(|(file, text)| std::fs::write(root.join(file), text).expect("a writable folder"));
+        pages.iter().for_each(|(file, text)| write(&root.join(file), text));
     }
     for (file, page) in &pages {
-        let written = std::fs::read_to_string(root.join(file)).unwrap_or_default().replace("\r\n", "\n");
+        let written = read(&root.join(file)).unwrap_or_default().replace("\r\n", "\n");
         assert!(written == *page, "{file} is not current: run `cargo xtask docs` (from {})", folder().display());
     }
     let is_stale = |path: &PathBuf| {
