@@ -95,6 +95,10 @@ fn tests(workspace: &Workspace) -> Command {
     for package in PACKAGES {
         cargo.args(["--package", package]);
     }
+    // counters are slow where nothing is inlined
+    for package in ["mozzi", "mozzi-identify", "nalgebra"] {
+        cargo.args(["--config", &format!("profile.test.package.{package}.opt-level=3")]);
+    }
     cargo.env("RUSTFLAGS", "-Cinstrument-coverage").env("CARGO_INCREMENTAL", "0");
     give(&mut cargo, "MOZZI_ORACLES", oracles::folder(workspace));
     give(&mut cargo, "MOZZI_ROBOTS", oracles::robots(workspace));
