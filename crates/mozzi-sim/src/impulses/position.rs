@@ -37,6 +37,14 @@ enum OpenRow {
     Point(FrameId, Touch, usize),
 }
 
+/// A configuration with its rows, what is left to move along them, and whether that is at most half as far.
+struct Nearer {
+    theta: Vec<f64>,
+    open: Vec<OpenRow>,
+    errors: DVector<f64>,
+    halves: bool,
+}
+
 impl Impulses<'_> {
     /// θ ← θ ⊕ δ with the least δᵀMδ that brings the contacts and stops that carried in the last step to gap 0, from
     /// either side, and sticking points back to their anchors. `h` is the length of the step. Returns true if θ
@@ -50,41 +58,49 @@ impl Impulses<'_> {
         self.move_anchors(h);
         self.set_anchors(t, theta, Some(&stopped));
         let (mut open, mut errors) = self.open_rows(t, theta);
-        let (mut changes, mut contracts) = (false, errors.amax() >= CLOSED);
+        let mut changes = false;
         for correction in 0..CORRECTIONS {
-            if !contracts || errors.amax() < CLOSED {
+            if errors.amax() < CLOSED {
                 break;
             }
             if correction == 0 {
                 self.mass.factor(theta, 0.0, &[])?;
             }
-            let J = self.jacobian(theta, open);
-            let G = self.delassus(&J);
-            let least = NOISE * G.diagonal().amax() + f64::MIN_POSITIVE;
-            // as if each row were alone: δᵀMδ is then Σ e²/G_rr
-            let size = |e: &DVector<f64>| (0..e.len()).map(|r| e[r] * e[r] / (G[(r, r)] + least)).sum::<f64>();
-            let before = size(&errors);
-            let smaller = REGULAR.iter().find_map(|regular| {
-                let mut regular_G = G.clone();
-                (0..G.nrows()).for_each(|r| regular_G[(r, r)] += G[(r, r)] * regular + least);
-                let p = regular_G.cholesky()?.solve(&errors);
-                if !(p.dot(&(&G * &p)) <= FARTHEST * FARTHEST * before) {
-                    return None;
-                }
-                let (mut change, mut to) = (J.tr_mul(&p), theta.to_vec());
-                self.mass.divide(change.as_mut_slice());
-                integrate(self.model, &mut to, change.as_slice(), 1.0);
-                let (open, errors) = self.open_rows(t, &to);
-                (size(&errors) < before).then_some((to, open, errors))
-            });
-            let Some((to, still_open, left)) = smaller else { break };
-            theta.copy_from_slice(&to);
-            (changes, contracts) = (true, size(&left) < 0.25 * before);
-            (open, errors) = (still_open, left);
+            let Some(nearer) = self.nearer(t, theta, open, &errors) else { break };
+            theta.copy_from_slice(&nearer.theta);
+            changes = true;
+            if !nearer.halves {
+                break;
+            }
+            (open, errors) = (nearer.open, nearer.errors);
         }
         self.set_anchors(t, theta, None);
         self.put_at_limits(theta);
         Ok(changes)
+    }
+
+    /// A configuration with smaller errors, Σ e²/G_rr, which is δᵀMδ as if each row were alone. None if there is none.
+    fn nearer(&mut self, t: f64, theta: &[f64], open: Vec<OpenRow>, errors: &DVector<f64>) -> Option<Nearer> {
+        let J = self.jacobian(theta, open);
+        let G = self.delassus(&J);
+        let least = NOISE * G.diagonal().amax() + f64::MIN_POSITIVE;
+        let size = |e: &DVector<f64>| (0..e.len()).map(|r| e[r] * e[r] / (G[(r, r)] + least)).sum::<f64>();
+        let before = size(errors);
+        REGULAR.iter().find_map(|regular| {
+            let mut sum = G.clone();
+            (0..G.nrows()).for_each(|r| sum[(r, r)] += G[(r, r)] * regular + least);
+            let p = sum.cholesky()?.solve(errors);
+            // δ = M⁻¹Jᵀp, δᵀMδ = pᵀG p
+            if !(p.dot(&(&G * &p)) <= FARTHEST * FARTHEST * before) {
+                return None;
+            }
+            let (mut change, mut theta) = (J.tr_mul(&p), theta.to_vec());
+            self.mass.divide(change.as_mut_slice());
+            integrate(self.model, &mut theta, change.as_slice(), 1.0);
+            let (open, errors) = self.open_rows(t, &theta);
+            let left = size(&errors);
+            (left < before).then_some(Nearer { theta, open, errors, halves: left < 0.25 * before })
+        })
     }
 
     /// Joints that are at their limits to rounding are there exactly.
