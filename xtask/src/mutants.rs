@@ -1,8 +1,8 @@
 //! A sample, by a seed, of the faults that cargo-mutants puts into the kernels, one at a time, each shown to the tests.
 //!
-//! `.cargo/mutants.toml` lists the files. A fault in a crate is shown to the unit tests of that crate, and, if they miss
-//! it, to all tests of mozzi, mozzi-engine, which computes every quantity twice, and mozzi-sim. What they miss, too, is
-//! in `target/mutants/missed/mutants.out`; a line of counts is added to docs/mutants.md.
+//! `.cargo/mutants.toml` lists the files. A fault in a crate is shown to the unit tests of that crate, and, if they
+//! miss it, to all tests of mozzi, mozzi-engine, which computes every quantity twice, and mozzi-sim. What they miss,
+//! too, is in `target/mutants/missed/mutants.out`; a line of counts is added to docs/mutants.md.
 
 use crate::command;
 use crate::report::Outcome;
