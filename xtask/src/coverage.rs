@@ -19,7 +19,7 @@ use std::process::Command;
 const PAGE: &str = "docs/coverage.md";
 const FOLDER: &str = "target/coverage";
 /// The libraries that are counted, by their tests; those of the command line and of Python run them, too, uncounted.
-/// The tests of mozzi-identify fit logs, which takes an hour with counters.
+/// The tests of mozzi-identify fit logs: with counters they take longer than all others.
 const PACKAGES: [&str; 6] = ["mozzi", "mozzi-engine", "mozzi-sim", "mozzi-motion", "mozzi-urdf", "mozzi-xacro"];
 
 /// Lines and regions: how many there are, and how many ran.

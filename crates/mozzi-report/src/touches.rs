@@ -43,7 +43,7 @@ struct Surface {
 }
 
 /// The pairs of a point and a plane that a page or a table of a motion shows: all, or those that carry in at least one
-/// row if there are more than [`MOST`].
+/// row if there are more than 100.
 pub fn shown_contacts(pairs: usize, motion: &Trajectory) -> Vec<usize> {
     if pairs <= MOST { (0..pairs).collect() } else { motion.carrying() }
 }
