@@ -51,7 +51,7 @@ fn try_run(workspace: &Workspace, sample: usize, seed: usize) -> Result<Outcome,
     let commit = workspace.git(&["rev-parse", "--short", "HEAD"]).unwrap_or_default();
     let line = format!("| {commit} | {seed} of {shards} | {caught} | {missed} | {unviable} | {share:.1} % |\n");
     std::fs::write(workspace.path(PAGE), workspace.read(PAGE)? + &line).map_err(|error| format!("{PAGE}: {error}"))?;
-    Ok(Outcome::Passed(format!("{caught} noticed, {missed} not, {unviable} do not compile; {FOLDER}/mutants.out")))
+    Ok(Outcome::Passed(format!("{caught} noticed, {missed} not, {unviable} do not compile; {FOLDER}")))
 }
 
 /// How many faults were noticed, not noticed, and do not compile.

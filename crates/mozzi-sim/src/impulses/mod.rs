@@ -11,7 +11,7 @@ pub(crate) use rows::{Key, System};
 use crate::Error;
 use crate::contacts::{ContactForce, Contacts, Surface};
 use crate::factored_mass::FactoredMass;
-use crate::one_sided::{Law, Problem, Solution, solve};
+use crate::one_sided::{Law, Problem, solve};
 use crate::{Friction, Options, Policy};
 use alloc::collections::BTreeMap;
 use alloc::vec;
@@ -27,8 +27,6 @@ use rows::Touching;
 /// velocities b, or to `LEAST`, m/s.
 const TOLERANCES: [f64; 2] = [1e-12, 1e-6];
 const LEAST: f64 = 1e-4;
-/// Rounds of the last method, and those once a problem of the same system had no solution.
-const ROUNDS: [usize; 2] = [5, 5];
 /// A residual above this is reported as unsolved, m/s.
 const UNSOLVED: f64 = 1e-6;
 /// Repeated solutions in which the friction of more contacts is taken at the middle of the step.
@@ -214,7 +212,8 @@ impl<'r> Impulses<'r> {
         let tolerances = TOLERANCES.map(|tolerance| tolerance * size);
         let G = core::mem::replace(&mut system.G, DMatrix::zeros(0, 0));
         let mut problem = Problem { G, b, laws: core::mem::take(&mut system.laws) };
-        let mut found = self.search(&problem, guess, tolerances, &mut system.is_hard);
+        let mut found = solve(&problem, guess, tolerances);
+        self.account.add(&found);
         let mut shifted = vec![false; system.rows.len()];
         for _ in 0..SHIFTS {
             let u = &problem.G * &found.p + &free;
@@ -230,25 +229,12 @@ impl<'r> Impulses<'r> {
             if !changes {
                 break;
             }
-            found = self.search(&problem, &found.p, tolerances, &mut system.is_hard);
+            found = solve(&problem, &found.p, tolerances);
+            self.account.add(&found);
         }
         let u = &problem.G * &found.p + &free;
         (system.G, system.laws) = (problem.G, problem.laws);
         Solved { p: found.p, before: before.clone(), free, u, residual: found.residual }
-    }
-
-    /// Solves a problem of a system, which is hard once one of its problems had no solution.
-    fn search(
-        &mut self,
-        problem: &Problem,
-        guess: &DVector<f64>,
-        tolerances: [f64; 2],
-        is_hard: &mut bool,
-    ) -> Solution {
-        let found = solve(problem, guess, tolerances, ROUNDS[usize::from(*is_hard)]);
-        self.account.add(&found);
-        *is_hard |= !(found.residual <= tolerances[1]);
-        found
     }
 
     /// Remembers the impulses of a step of h seconds that counts.

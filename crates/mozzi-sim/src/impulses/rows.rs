@@ -39,8 +39,6 @@ pub(crate) struct System {
     /// J M⁻¹Jᵀ
     pub G: DMatrix<f64>,
     pub touches: Vec<Touching>,
-    /// True once a problem with these rows had no solution.
-    pub is_hard: bool,
 }
 
 /// A contact of a system.
@@ -157,7 +155,7 @@ impl Impulses<'_> {
         let J = DMatrix::from_row_slice(w.len(), n, &rows);
         let G = self.delassus(&J);
         let laws = blocks.iter().map(|&(_, _, law)| law).collect();
-        Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, touches, is_hard: false })
+        Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, touches })
     }
 
     /// J M⁻¹Jᵀ: the products of the rows of D^{−½}L⁻ᵀJᵀ.

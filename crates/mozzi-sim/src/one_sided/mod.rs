@@ -75,8 +75,9 @@ const FAR: [f64; 25] = {
 const SWEEPS: usize = 20;
 /// Sweeps follow where Newton's method leaves more than this many times the residual that is sought.
 const FAR_OFF: f64 = 1e4;
-/// Iterations of the last method between Newton steps.
+/// Iterations of the last method between Newton steps, and the number of such rounds.
 const ADMM_CHUNK: usize = 300;
+const ADMM_ROUNDS: usize = 5;
 
 impl Problem {
     /// u = G p + b.
@@ -141,12 +142,11 @@ fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
 }
 
 /// Impulses from a guess of m numbers, whose residual is at most `sought`; at most `enough` where Newton steps and
-/// sweeps do not give more; or the best that were found, after at most so many `rounds` of the last method, of 40
-/// iterations and Newton steps.
+/// sweeps do not give more; or the best that were found, after at most 1500 iterations of the last method.
 ///
 /// # Panics
 /// When the guess is not m long.
-pub fn solve(problem: &Problem, guess: &DVector<f64>, [sought, enough]: [f64; 2], rounds: usize) -> Solution {
+pub fn solve(problem: &Problem, guess: &DVector<f64>, [sought, enough]: [f64; 2]) -> Solution {
     let m = problem.b.len();
     assert!(guess.len() == m, "the guess has {} entries, expected {m}", guess.len());
     let mut found = Solution { p: guess.clone(), residual: 0.0, newton_steps: 0, sweeps: 0, admm_iterations: 0 };
@@ -178,7 +178,7 @@ pub fn solve(problem: &Problem, guess: &DVector<f64>, [sought, enough]: [f64; 2]
     }
     if of.residual > enough {
         let mut method = admm::Admm::new(&of.problem, &of.best);
-        for _ in 0..rounds {
+        for _ in 0..ADMM_ROUNDS {
             found.admm_iterations += method.iterate(&of.problem, sought, ADMM_CHUNK);
             let p = method.impulses().clone();
             of.offer(&p);
