@@ -26,11 +26,12 @@ fn try_run(workspace: &Workspace, sample: usize, seed: usize) -> Result<Outcome,
     if !command::exists(&mut workspace.cargo(&["mutants"])) {
         return Ok(Outcome::Skipped("`cargo install cargo-mutants` installs what it needs".into()));
     }
-    let (_, list) = command::output(workspace.cargo(&["mutants", "--list"]))?;
+    let (_, list) = command::output(workspace.cargo(&["mutants", "--workspace", "--list"]))?;
     let all = list.lines().count();
     let shards = (all / sample).max(1);
     // first the crate's own tests, in seconds
-    let mut own = workspace.cargo(&["mutants", "--in-place", "--no-shuffle", "--sharding", "round-robin"]);
+    let mut own =
+        workspace.cargo(&["mutants", "--workspace", "--in-place", "--no-shuffle", "--sharding", "round-robin"]);
     own.args(["--shard", &format!("{}/{shards}", seed % shards), "--output", FOLDER, "--timeout", "300"]);
     own.args(["--baseline", "run", "--", "--lib"]);
     let _ = command::run(own); // its exit code says that some were missed
@@ -38,7 +39,8 @@ fn try_run(workspace: &Workspace, sample: usize, seed: usize) -> Result<Outcome,
     let names = workspace.read(&format!("{FOLDER}/mutants.out/missed.txt"))?;
     if missed > 0 {
         // then, of what they miss, those that compute every quantity in every way
-        let mut others = workspace.cargo(&["mutants", "--in-place", "--output", SECOND, "--timeout", "300"]);
+        let mut others =
+            workspace.cargo(&["mutants", "--workspace", "--in-place", "--output", SECOND, "--timeout", "300"]);
         for name in names.lines() {
             others.args(["--re", &format!("^{}$", escaped(name))]);
         }

@@ -93,28 +93,6 @@ impl Executable {
         self.run_with(runs, &mut addresses, last);
     }
 
-    /// As [`call`](Self::call), once, with inputs and outputs each in one slice, array after array.
-    ///
-    /// # Panics
-    /// If the numbers are of another type, or a slice is too short.
-    #[inline(always)]
-    pub fn call_joined<S: Float>(&self, inputs: &[S], outputs: &mut [S], last: &mut [S]) {
-        let mut addresses = [std::ptr::null_mut::<u8>(); MOST_ARRAYS];
-        let (given, found) = self.extents.split_at(self.inputs);
-        let found = &found[..found.len() - 1]; // the last is an argument of its own
-        let mut at = 0;
-        for (address, extent) in addresses.iter_mut().zip(given) {
-            let array = &inputs[at..at + extent.size];
-            (*address, at) = (array.as_ptr().cast_mut().cast(), at + array.len());
-        }
-        let mut rest = outputs;
-        for (address, extent) in addresses[self.inputs..].iter_mut().zip(found) {
-            let (array, further) = rest.split_at_mut(extent.size);
-            (*address, rest) = (array.as_mut_ptr().cast(), further);
-        }
-        self.run_with(1, &mut addresses, last);
-    }
-
     /// Runs with these addresses and that of the last output, whose type and length are checked here.
     #[inline(always)]
     fn run_with<S: Float>(&self, runs: usize, addresses: &mut Addresses, last: &mut [S]) {

@@ -183,15 +183,6 @@ impl Kernel {
         self.executable.call(runs, inputs, outputs, squares);
     }
 
-    /// As [`call`](Self::call), with the inputs one after the other in one slice and the outputs in another.
-    ///
-    /// # Panics
-    /// If the numbers do not have the shape's type, or a slice is too short.
-    #[inline(always)]
-    pub fn call_joined<S: Float>(&self, inputs: &[S], outputs: &mut [S], squares: &mut [S]) {
-        self.executable.call_joined(inputs, outputs, squares);
-    }
-
     /// The largest sum of squares for which angles are reduced exactly.
     #[inline(always)]
     pub fn angle_limit(&self) -> f64 {

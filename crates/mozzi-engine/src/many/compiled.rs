@@ -127,11 +127,6 @@ impl Compiled {
         self.machine(&query.into()).map_or(Engine::Kernels(Refusal::NotAsked), |machine| Engine::of(&machine.code))
     }
 
-    /// The engine that computes this quantity at many states.
-    pub fn batch_engine<'q>(&self, query: impl Into<Query<'q>>) -> Engine {
-        self.batch.engine(query)
-    }
-
     #[inline(always)]
     fn machine(&self, query: &Query) -> Option<&Machine> {
         self.machines.iter().find(|machine| machine.is_of(query))

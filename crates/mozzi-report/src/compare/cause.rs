@@ -72,6 +72,7 @@ impl Cause {
             Cause::Held(list) => {
                 // they contain joints that are fixed from here on, and are not compared
                 (robot.states, robot.start) = (Vec::new(), None);
+                robot.constraints.clear();
                 for joint in &mut robot.joints {
                     if list.contains(&joint.name) {
                         joint.kind = JointKind::Fixed;

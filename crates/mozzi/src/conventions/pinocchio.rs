@@ -213,21 +213,11 @@ impl Pinocchio {
 
     /// A body's `toDynamicParameters()`, (m, mc, I_xx, I_xy, I_yy, I_xz, I_yz, I_zz), from its ten of
     /// [`Model::parameters`], (m, mc, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz); or a body's ten columns of a row of
-    /// `computeJointTorqueRegressor` from those of [`Model::regressor`].
-    pub fn body_parameters(mine: [f64; 10]) -> [f64; 10] {
-        swap_yy_and_xz(mine)
+    /// `computeJointTorqueRegressor` from those of [`Model::regressor`]. It is its own inverse.
+    pub fn body_parameters(mut parameters: [f64; 10]) -> [f64; 10] {
+        parameters.swap(6, 7); // I_xz and I_yy
+        parameters
     }
-
-    /// The inverse of [`body_parameters`](Self::body_parameters).
-    pub fn from_body_parameters(theirs: [f64; 10]) -> [f64; 10] {
-        swap_yy_and_xz(theirs)
-    }
-}
-
-/// Swaps I_yy and I_xz, which are adjacent in both orders.
-fn swap_yy_and_xz(mut parameters: [f64; 10]) -> [f64; 10] {
-    parameters.swap(6, 7);
-    parameters
 }
 
 /// True for a revolute joint without position limits.

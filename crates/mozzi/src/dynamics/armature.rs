@@ -8,7 +8,6 @@
 use crate::linalg::Vec3;
 use crate::model::Model;
 use crate::scalar::Scalar;
-use nalgebra::DMatrix;
 
 /// Adds the part of M θ̈ from rotors that several joints turn.
 #[cfg_attr(not(debug_assertions), inline(always))]
@@ -113,16 +112,5 @@ fn add_cross<S: Scalar>(n: usize, X: &mut [S], [row, column]: [usize; 2], x: Vec
         for (c, entry) in entries.into_iter().enumerate() {
             X[(row + r) * n + column + c] += entry;
         }
-    }
-}
-
-impl Model<f64> {
-    /// The rotors' part of M, n × n and constant: on the diagonal Σ ratio² armature of each joint and its mimic joints
-    /// (0 for a floating base), and a JᵀJ for each rotor that several joints turn, with the row J of its gear ratios.
-    /// kg m² or kg.
-    pub fn armature_matrix(&self) -> DMatrix<f64> {
-        let mut M = DMatrix::zeros(self.n(), self.n());
-        set_armature(self, M.as_mut_slice());
-        M
     }
 }
