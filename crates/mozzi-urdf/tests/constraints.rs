@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 
 /// A and φ.
-fn rows(model: &Model, theta: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+pub fn rows(model: &Model, theta: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let (m, n) = (model.constraint_row_names().count(), model.n());
     let (mut A, mut bias, mut phi) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; m]);
     let rest = vec![0.0; n];

@@ -17,6 +17,7 @@ mod freedoms;
 mod keyframes;
 mod meshes;
 mod mjcf;
+mod mjcf_writer;
 mod oracles;
 mod published;
 mod refused;

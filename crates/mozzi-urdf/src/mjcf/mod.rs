@@ -64,7 +64,6 @@ mod inertial;
 mod joint;
 mod keyframe;
 mod law;
-mod losses;
 mod mesh;
 mod option;
 mod orientation;

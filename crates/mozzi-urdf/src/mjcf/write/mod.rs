@@ -1,15 +1,19 @@
-//! Writes MJCF text: a tree of bodies, without shapes.
+//! Writes MJCF text: a tree of bodies, without shapes, and what ties them.
 
-use super::losses;
+mod equality;
+mod keyframe;
+mod losses;
+
 use crate::urdf::write::{escaped, triple};
 use crate::written::{NotWritten, Written};
+use equality::Site;
 use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
-/// The MJCF text of a robot, which MuJoCo reads, too: bodies, joints, sites, mimic joints as equalities, rotors as
-/// fixed tendons. A base link `world` is MuJoCo's own; another fixed base is a body of it. Links without mass between
+/// The MJCF text of a robot, which MuJoCo reads, too: bodies, joints, sites, mimic joints and constraints as equalities,
+/// rotors as fixed tendons, named states as keys. A base link `world` is MuJoCo's own; another fixed base is a body of it. Links without mass between
 /// joints become further joints of the next body, since MuJoCo refuses them. A helical joint becomes a hinge and a
 /// slide that follows it.
 ///
@@ -19,7 +23,11 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
     let mut reasons = Vec::new();
     let d = description;
     let is_control = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
-    let names = d.links.iter().map(|link| &link.name).chain(d.joints.iter().map(|joint| &joint.name)).chain([&d.name]);
+    let names = (d.links.iter().map(|link| &link.name))
+        .chain(d.joints.iter().map(|joint| &joint.name))
+        .chain(d.constraints.iter().map(|constraint| &constraint.name))
+        .chain(d.states.iter().map(|state| &state.name))
+        .chain([&d.name]);
     reasons.extend(names.filter(|name| name.contains(is_control)).map(|name| format!("the name {name:?}")));
     let plan = Plan::of(d);
     for joint in d.joints.iter().filter(|joint| joint.kind == JointKind::Free) {
@@ -44,12 +52,14 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
 }
 
 /// How the tree is written.
-pub(super) struct Plan<'d> {
-    pub d: &'d Description,
+struct Plan<'d> {
+    d: &'d Description,
     /// The joints on each link, in the order of the robot.
     below: BTreeMap<&'d str, Vec<&'d Joint>>,
     base: Option<&'d Link>,
     links: BTreeMap<&'d str, &'d Link>,
+    /// The frames of constraints.
+    sites: Vec<Site<'d>>,
 }
 
 /// One joint of a body, and its axis in the body's frame.
@@ -65,21 +75,22 @@ impl<'d> Plan<'d> {
         d.joints.iter().for_each(|joint| below.entry(&joint.parent).or_default().push(joint));
         let base = d.links.iter().find(|link| !children.contains(link.name.as_str()));
         let links = d.links.iter().map(|link| (link.name.as_str(), link)).collect();
-        Plan { d, below, base, links }
+        Plan { d, below, base, links, sites: equality::sites(d) }
     }
 
     /// True for MuJoCo's world: a fixed, massless base named `world`.
-    pub fn is_world(&self, link: &str) -> bool {
+    fn is_world(&self, link: &str) -> bool {
         let is_base = self.base.is_some_and(|base| base.name == link && base.inertia.mass == 0.0);
         link == "world" && is_base && self.d.base == Base::Fixed
     }
 
     /// The joint after a link without mass and frames, which MuJoCo could not have between two joints.
-    pub fn next(&self, joint: &Joint) -> Option<&'d Joint> {
+    fn next(&self, joint: &Joint) -> Option<&'d Joint> {
         let link = self.links.get(joint.child.as_str()).filter(|link| link.inertia == SpatialInertia::zero())?;
         let &[next] = self.below.get(link.name.as_str())?.as_slice() else { return None };
         let both = [joint, next].iter().all(|joint| matches!(joint.kind, JointKind::Screw(_)));
-        let has_frame = self.d.frames.iter().any(|frame| frame.link == link.name);
+        let has_frame = self.d.frames.iter().any(|frame| frame.link == link.name)
+            || self.sites.iter().any(|site| site.link == Some(&link.name));
         (both && !has_frame).then_some(next)
     }
 }
@@ -88,6 +99,9 @@ fn mujoco(text: &mut String, plan: &Plan) -> fmt::Result {
     let d = plan.d;
     writeln!(text, "<mujoco model=\"{}\">\n  <compiler angle=\"radian\"/>", escaped(&d.name))?;
     writeln!(text, "  <option gravity=\"{}\"/>\n  <worldbody>", triple(Vec3(d.gravity)))?;
+    for site in plan.sites.iter().filter(|site| site.link.is_none()) {
+        self::site(text, &site.name, site.T, 2)?;
+    }
     match plan.base {
         Some(base) if plan.is_world(&base.name) => inside(text, plan, &base.name, 2)?,
         Some(base) => {
@@ -103,18 +117,9 @@ fn mujoco(text: &mut String, plan: &Plan) -> fmt::Result {
         None => {}
     }
     text.write_str("  </worldbody>\n")?;
-    equalities(text, d)?;
-    if !d.rotors.is_empty() {
-        text.write_str("  <tendon>\n")?;
-        for rotor in &d.rotors {
-            writeln!(text, "    <fixed name=\"{}\" armature=\"{:?}\">", escaped(&rotor.name), rotor.armature)?;
-            for gear in &rotor.gears {
-                writeln!(text, "      <joint joint=\"{}\" coef=\"{:?}\"/>", escaped(&gear.joint), gear.ratio)?;
-            }
-            text.write_str("    </fixed>\n")?;
-        }
-        text.write_str("  </tendon>\n")?;
-    }
+    equality::tendons(text, d)?;
+    equality::equalities(text, d)?;
+    keyframe::keyframe(text, plan)?;
     text.write_str("</mujoco>\n")
 }
 
@@ -137,8 +142,13 @@ fn body(text: &mut String, plan: &Plan, link: &Link, depth: usize) -> fmt::Resul
     let G = link.inertia;
     if G != SpatialInertia::zero() {
         let (c, I) = (G.center_of_mass(), G.about_center_of_mass());
-        let moments = [I.xx, I.yy, I.zz, I.xy, I.xz, I.yz].map(|x| format!("{x:?}")).join(" ");
-        writeln!(text, "{indent}  <inertial pos=\"{}\" mass=\"{:?}\" fullinertia=\"{moments}\"/>", triple(c), G.mass)?;
+        let numbers = |list: &[f64]| list.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ");
+        // MuJoCo refuses moments of 0 only as a full inertia
+        let inertia = match [I.xy, I.xz, I.yz] {
+            [0.0, 0.0, 0.0] => format!("diaginertia=\"{}\"", numbers(&[I.xx, I.yy, I.zz])),
+            products => format!("fullinertia=\"{}\"", numbers(&[[I.xx, I.yy, I.zz], products].concat())),
+        };
+        writeln!(text, "{indent}  <inertial pos=\"{}\" mass=\"{:?}\" {inertia}/>", triple(c), G.mass)?;
     }
     inside(text, plan, &link.name, depth + 1)?;
     writeln!(text, "{indent}</body>")
@@ -146,16 +156,11 @@ fn body(text: &mut String, plan: &Plan, link: &Link, depth: usize) -> fmt::Resul
 
 /// The sites and the child bodies of a link.
 fn inside(text: &mut String, plan: &Plan, link: &str, depth: usize) -> fmt::Result {
-    let indent = "  ".repeat(depth);
     for frame in plan.d.frames.iter().filter(|frame| frame.link == link) {
-        let (w, v) = frame.T.R.quaternion();
-        writeln!(
-            text,
-            "{indent}<site name=\"{}\" pos=\"{}\" quat=\"{w:?} {}\"/>",
-            escaped(&frame.name),
-            triple(frame.T.p),
-            triple(v)
-        )?;
+        site(text, &frame.name, frame.T, depth)?;
+    }
+    for of_constraint in plan.sites.iter().filter(|site| site.link == Some(link)) {
+        site(text, &of_constraint.name, of_constraint.T, depth)?;
     }
     for first in plan.below.get(link).into_iter().flatten() {
         // the joints of one body, one after the other; earlier axes move to the frame of the last
@@ -180,6 +185,11 @@ fn inside(text: &mut String, plan: &Plan, link: &str, depth: usize) -> fmt::Resu
         body(text, plan, child, depth)?;
     }
     Ok(())
+}
+
+fn site(text: &mut String, name: &str, T: SE3, depth: usize) -> fmt::Result {
+    let (indent, name, (w, v)) = ("  ".repeat(depth), escaped(name), T.R.quaternion());
+    writeln!(text, "{indent}<site name=\"{name}\" pos=\"{}\" quat=\"{w:?} {}\"/>", triple(T.p), triple(v))
 }
 
 /// The pose of a free joint in the state in which the robot starts.
@@ -234,29 +244,9 @@ fn joint(text: &mut String, placed: &Placed, depth: usize) -> fmt::Result {
 }
 
 /// The axis of a helical joint.
-pub(super) fn travel(kind: JointKind) -> Option<ScrewAxis> {
+fn travel(kind: JointKind) -> Option<ScrewAxis> {
     match kind {
         JointKind::Screw(A) if kind.name() == "helical" => Some(A),
         _ => None,
     }
-}
-
-/// Mimic joints, and the slides of helical joints: their travel is the pitch times the turn.
-fn equalities(text: &mut String, d: &Description) -> fmt::Result {
-    let mut lines = Vec::new();
-    let mut couple = |one: &str, other: &str, offset: f64, ratio: f64| {
-        let (one, other) = (escaped(one), escaped(other));
-        lines.push(format!(
-            "    <joint joint1=\"{one}\" joint2=\"{other}\" polycoef=\"{offset:?} {ratio:?} 0 0 0\"/>\n"
-        ));
-    };
-    for joint in &d.joints {
-        if let Some(A) = travel(joint.kind) {
-            couple(&format!("{}.travel", joint.name), &joint.name, 0.0, A.pitch());
-        }
-        if let Some(mimic) = &joint.mimic {
-            couple(&joint.name, &mimic.joint, mimic.offset, mimic.ratio);
-        }
-    }
-    if lines.is_empty() { Ok(()) } else { write!(text, "  <equality>\n{}  </equality>\n", lines.concat()) }
 }

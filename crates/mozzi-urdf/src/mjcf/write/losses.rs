@@ -1,6 +1,6 @@
 //! The properties of a robot that MJCF cannot express.
 
-use super::write::{Plan, travel};
+use super::{Plan, equality, keyframe, travel};
 use crate::written::names_of;
 use mozzi::Base;
 use mozzi::Description;
@@ -40,7 +40,7 @@ pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
             losses.push(format!("joint `{name}`: friction or spring of a free joint"));
         }
     }
-    losses.extend(d.constraints.iter().map(|one| format!("constraint `{}`: the robot is a tree", one.name)));
+    losses.extend(d.constraints.iter().filter_map(equality::loss));
     if d.motors.is_some() {
         losses.push("the list of motors".to_string());
     }
@@ -48,8 +48,7 @@ pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
     if d.base == Base::Floating && d.free_joint.parent != FreeJoint::default().parent {
         losses.push(format!("the name of the space frame, `{}`", d.free_joint.parent));
     }
-    let states: Vec<&str> = d.states.iter().map(|state| state.name.as_str()).collect();
-    losses.extend(names_of("the named states", &states));
+    losses.extend(keyframe::loss(d));
     losses
 }
 

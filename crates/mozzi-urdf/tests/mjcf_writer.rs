@@ -1,0 +1,132 @@
+//! What MJCF says beyond the tree: constraints as equalities, named states as keys; written, and read again.
+#![allow(clippy::unwrap_used)]
+
+use crate::constraints::rows;
+use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Gear};
+use mozzi::random::state;
+use mozzi::{Description, Model, SE3, Twist};
+use mozzi_urdf::{mjcf, parse};
+
+/// A free trunk, two legs of a ball, a hinge and a slide that follows it, a screw, and states.
+const ROBOT: &str = "<mujoco><compiler angle='radian'/><worldbody><body name='trunk' pos='0 0 1'><freejoint name='float'/><geom size='0.1'/>
+  <site name='eye' pos='0.1 0 0.2' euler='0.1 0.2 0.3'/>
+  <body name='thigh'><joint name='ball' type='ball'/><geom size='0.1'/>
+   <body name='shin' pos='0 0.1 -0.3'><joint name='knee'/><geom size='0.1'/></body>
+   <body name='rod'><joint name='follows' type='slide'/><geom size='0.1'/></body></body>
+  <body name='arm' pos='0 1 0' euler='0.3 0 0'><joint name='shoulder' axis='0 1 0'/><geom size='0.1'/>
+   <body name='hand' pos='0 0 0.4'><joint name='wrist' axis='1 0 0'/><geom size='0.1'/></body></body>
+ </body></worldbody><equality><joint joint1='follows' joint2='knee' polycoef='0.1 2 0 0 0'/></equality>
+ <keyframe><key name='stands' time='2' qpos='1 2 3 0 1 0 0  0 0 1 0  0.3 0.7  -0.2 0.4' qvel='1 2 3 4 5 6  7 8 9  1 2  3 4'/></keyframe>
+</mujoco>";
+
+fn robot(constraints: Vec<Constraint>) -> Description {
+    let mut robot = parse("r.xml", ROBOT).unwrap().description;
+    robot.constraints = constraints;
+    robot
+}
+
+/// The robot that is read from what is written, and the losses.
+fn read_again(robot: &Description) -> (Description, Vec<String>) {
+    let written = mjcf::write(robot).unwrap();
+    (
+        parse("w.xml", &written.text).unwrap_or_else(|error| panic!("{error}\n{}", written.text)).description,
+        written.losses,
+    )
+}
+
+/// Anchors of all kinds: a link, a frame as it is, a frame with an offset, the world.
+fn anchors() -> [Anchor; 4] {
+    let T = |x: f64| SE3::exp(Twist::from_array([0.3 * x, -0.2, 0.5, 0.1, x, -0.4]));
+    [Anchor::frame("hand").at(T(1.0)), Anchor::frame("eye"), Anchor::frame("eye").at(T(2.0)), Anchor::world(T(-1.0))]
+}
+
+fn rows_are_alike(one: &Model, other: &Model) {
+    for seed in 0..20 {
+        let [theta, ..] = state(one, seed);
+        let [(A, phi), (B, there)] = [one, other].map(|model| rows(model, &theta));
+        assert!((&A - &B).amax() < 1e-13, "{A}{B}");
+        // the rotation vector of a weld that is open by almost a half turn is ill-conditioned
+        assert!((&phi - &there).amax() < 1e-10, "{phi}{there}");
+    }
+}
+
+#[test]
+fn points_welds_and_sums_of_joints_are_the_same_constraints() {
+    let mut constraints = Vec::new();
+    let all = anchors();
+    for (k, b) in all.iter().enumerate() {
+        let closure = [Closure::Point, Closure::Weld][k % 2];
+        constraints.push(Constraint::new(format!("<tie {k}>"), Anchor::frame("shin"), b.clone(), closure));
+    }
+    let gear = |joint: &str, ratio: f64| Gear { joint: joint.into(), ratio };
+    let sums = [
+        (vec![gear("shoulder", 1.0)], vec![gear("wrist", 1.0)], [0.2, -1.5, 0.0, 0.0, 0.0]),
+        (
+            vec![gear("shoulder", 2.0), gear("knee", -1.0)],
+            vec![gear("wrist", 0.5), gear("follows", 0.3)],
+            [0.1, 1.0, 0.3, 0.0, 2.0],
+        ),
+        (vec![gear("wrist", 1.0)], vec![], [0.4, 0.0, 0.0, 0.0, 0.0]),
+    ];
+    for (k, (joints, source, polynomial)) in sums.into_iter().enumerate() {
+        constraints
+            .push(Constraint { name: format!("sum {k}"), kind: ConstraintKind::Joint { joints, source, polynomial } });
+    }
+    let before = robot(constraints);
+    let (after, losses) = read_again(&before);
+    assert!(losses.is_empty(), "{losses:?}");
+    let names = |robot: &Description| robot.constraints.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&before), names(&after));
+    rows_are_alike(&before.build().unwrap(), &after.build().unwrap());
+}
+
+#[test]
+fn a_hinge_becomes_two_points_of_its_axis() {
+    let [b, _, _, a] = anchors();
+    let before = robot(vec![Constraint::hinge("pin", a, b)]);
+    let (after, losses) = read_again(&before);
+    assert_eq!(losses, ["constraint `pin`: a hinge, written as two points of its axis"]);
+    // they forbid the same velocities where the hinge is closed, at some distance other ones: compared by their ranks
+    let [one, two] = [before, after].map(|robot| robot.build().unwrap());
+    let theta = one.assemble(&one.neutral_configuration::<f64>(), &[]).unwrap();
+    let [A, B] = [&one, &two].map(|model| rows(model, &theta).0);
+    let both = nalgebra::DMatrix::from_rows(&A.row_iter().chain(B.row_iter()).collect::<Vec<_>>());
+    assert_eq!([&A, &B, &both].map(|rows| rows.rank(1e-9)), [5, 5, 5]);
+}
+
+#[test]
+fn what_mujoco_has_not_is_told() {
+    let [a, _, b, _] = anchors();
+    let before = robot(vec![
+        Constraint::distance("rope", a.clone(), b.clone(), 0.3),
+        Constraint::rolling("wheel", Anchor::world(SE3::identity()), a, 0.1),
+    ]);
+    let (after, losses) = read_again(&before);
+    assert!(after.constraints.is_empty());
+    let expected =
+        ["constraint `rope`: distance, which MuJoCo has not", "constraint `wheel`: rolling, which MuJoCo has not"];
+    assert_eq!(losses, expected);
+}
+
+#[test]
+fn named_states_are_keys() {
+    let before = robot(Vec::new());
+    let (after, losses) = read_again(&before);
+    assert!(losses.is_empty(), "{losses:?}");
+    let [one, two] = [&before, &after].map(|robot| robot.clone().build().unwrap());
+    assert_eq!(one.state_names().collect::<Vec<_>>(), ["qpos0", "stands"]);
+    assert_eq!(two.state_names().collect::<Vec<_>>(), ["qpos0", "stands"]);
+    for name in ["qpos0", "stands"] {
+        let [one, two] = [&one, &two].map(|model| model.state(name).unwrap());
+        assert_eq!(one.time, two.time);
+        let gap = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(gap(&one.theta, &two.theta) < 1e-15 && gap(&one.dtheta, &two.dtheta) < 1e-14, "{one:?} {two:?}");
+    }
+    assert_eq!(one.start(), two.start());
+    // a start that bodies' poses do not express is a key, and no start
+    let mut bent = before;
+    bent.start = Some("stands".into());
+    let (after, losses) = read_again(&bent);
+    assert_eq!(losses, ["the choice of the state in which the robot starts, `stands`"]);
+    assert!(after.states.iter().any(|state| state.name == "stands"));
+}
