@@ -63,7 +63,7 @@ fn placed<'d>(d: &'d Description, anchor: &'d Anchor) -> (Option<&'d str>, SE3) 
     }
 }
 
-/// What MJCF says of a constraint, if not all.
+/// The part of a constraint that MJCF cannot express.
 pub(super) fn loss(constraint: &Constraint) -> Option<String> {
     let name = &constraint.name;
     match &constraint.kind {
