@@ -90,10 +90,10 @@ fn obj(text: &str) -> Result<(), String> {
     let mut largest = (0, 0);
     for (k, line) in text.lines().enumerate() {
         let wrong = |expected: &str| Err(format!("line {}: expected {expected} of an OBJ", k + 1));
-        let line = line.split('#').next().unwrap_or_default().trim();
+        let line = line.split('#').next().unwrap_or_default().trim_ascii();
         let was_continued = std::mem::replace(&mut is_continued, line.ends_with('\\'));
-        let mut words = line.trim_end_matches('\\').split_whitespace();
-        let numbers = |mut words: std::str::SplitWhitespace<'_>| words.all(is_finite);
+        let mut words = line.trim_end_matches('\\').split_ascii_whitespace();
+        let numbers = |mut words: std::str::SplitAsciiWhitespace<'_>| words.all(is_finite);
         let indices = |word: &str| word.split('/').all(|index| index.is_empty() || index.parse::<i64>().is_ok());
         match words.next() {
             None => {}
@@ -112,7 +112,7 @@ fn obj(text: &str) -> Result<(), String> {
                     largest = largest.max((index, k + 1));
                 }
             }
-            Some(word) if WORDS.split_whitespace().any(|known| known == word) => {}
+            Some(word) if WORDS.split_ascii_whitespace().any(|known| known == word) => {}
             Some(_) => return wrong("a word"),
         }
     }

@@ -26,6 +26,14 @@ impl Surface {
         }
     }
 
+    /// The vertices of an STL or an OBJ alone.
+    pub fn vertices(format: &str, file: &[u8]) -> Result<Vec<Vec3>, String> {
+        match format {
+            "obj" => check_mesh(format, file).and_then(|()| words(file, "v")),
+            _ => Ok(Self::read(format, file)?.vertices),
+        }
+    }
+
     fn of(vertices: Vec<Vec3>, triangles: Vec<[usize; 3]>) -> Self {
         Surface { first_group: triangles.len(), vertices, triangles }
     }
@@ -61,7 +69,7 @@ fn words(file: &[u8], word: &str) -> Result<Vec<Vec3>, String> {
     let text = bytes::to_text(file).map_err(|(_, finding)| finding.message)?;
     let mut found = Vec::new();
     for line in text.lines() {
-        let mut parts = line.split_whitespace();
+        let mut parts = line.split_ascii_whitespace();
         if parts.next().is_some_and(|first| first.eq_ignore_ascii_case(word)) {
             let numbers: Vec<f64> = parts.take(3).filter_map(|part| part.parse().ok()).collect();
             if let [x, y, z] = numbers[..] {
@@ -78,7 +86,7 @@ fn obj(file: &[u8]) -> Result<Surface, String> {
     let (vertices, mut triangles, mut first_group) = (words(file, "v")?, Vec::new(), None);
     let mut count = 0_i64;
     for line in text.lines() {
-        let mut parts = line.split('#').next().unwrap_or_default().split_whitespace();
+        let mut parts = line.split('#').next().unwrap_or_default().split_ascii_whitespace();
         match parts.next() {
             Some("v") => count += 1,
             Some("o" | "g") if !triangles.is_empty() => {

@@ -15,7 +15,7 @@ const DIRECTIONS: usize = 2000;
 /// Another format, or content that is no mesh.
 pub fn mesh_corners(format: &str, file: &[u8]) -> Result<Vec<Vec3>, String> {
     let mut vertices = match format {
-        "stl" | "obj" => Surface::read(format, file)?.vertices,
+        "stl" | "obj" => Surface::vertices(format, file)?,
         other => return Err(format!("the vertices of `{other}` meshes are not read; expected stl or obj")),
     };
     // each once: a corner of a surface belongs to some six triangles
