@@ -13,9 +13,9 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 /// The MJCF text of a robot, which MuJoCo reads, too: bodies, joints, sites, mimic joints and constraints as
-/// equalities, rotors as fixed tendons, named states as keys. A base link `world` is MuJoCo's own; another fixed base is
-/// a body of it. Links without mass between joints become further joints of the next body, since MuJoCo refuses them. A
-/// helical joint becomes a hinge and a slide that follows it.
+/// equalities, rotors as fixed tendons, named states as keys. A base link `world` is MuJoCo's own; another fixed base
+/// is a body of it. Links without mass between joints become further joints of the next body, since MuJoCo refuses
+/// them. A helical joint becomes a hinge and a slide that follows it.
 ///
 /// # Errors
 /// [`NotWritten`] if the robot would be another one: free joints inside the tree, control characters in names.
