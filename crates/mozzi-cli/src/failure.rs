@@ -62,7 +62,12 @@ pub fn note(text: &str) {
 
 impl From<mozzi::Error> for Failure {
     fn from(error: mozzi::Error) -> Self {
-        Failure::Wrong(error.to_string())
+        match &error {
+            mozzi::Error::NoEndEffector { leaves } if !leaves.is_empty() => {
+                Failure::Wrong(format!("{error}; name one by --frame {}", leaves[0]))
+            }
+            _ => Failure::Wrong(error.to_string()),
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use std::path::Path;
 pub struct GroundArguments {
     /// Put the robot on the ground, the plane z = 0: its collision shapes touch it, or the frames of --contact. A
     /// floating base without --theta starts on the ground
-    #[arg(long)]
+    #[arg(long, alias = "floor")]
     ground: bool,
     /// A frame whose origin touches planes, instead of the collision shapes; may be repeated
     #[arg(long, value_name = "FRAME")]

@@ -1,5 +1,6 @@
 //! First guesses: command lines that people type before they know the commands.
 
+use crate::numbers::is_number;
 use clap::Command;
 use mozzi::quantities::Query;
 use std::ffi::OsString;
@@ -45,6 +46,42 @@ pub fn meant(words: Vec<OsString>, program: &Command) -> Result<Vec<OsString>, S
     })
 }
 
+/// The numbers after a flag as one value: `--q 0 -90 45deg` is `--q=0,-90,45deg`, also `--q 0, -90, 45deg`.
+pub fn joined(words: Vec<OsString>) -> Vec<OsString> {
+    let is_flag = |word: &str| word.starts_with("--") && word.len() > 2;
+    let is_list = |word: &str| !word.is_empty() && word.split(',').all(|entry| entry.is_empty() || is_number(entry));
+    let mut found: Vec<OsString> = Vec::new();
+    let mut words = words.into_iter().peekable();
+    while let Some(word) = words.next() {
+        let mut numbers: Vec<String> = Vec::new();
+        let flag = word.to_str().filter(|word| is_flag(word)).and_then(|word| match word.split_once('=') {
+            Some((flag, value)) if is_list(value) => {
+                numbers.push(value.to_string());
+                Some(flag.to_string())
+            }
+            Some(_) => None,
+            None => Some(word.to_string()),
+        });
+        if flag.is_some() {
+            while let Some(more) = words.next_if(|word| word.to_str().is_some_and(is_list)) {
+                numbers.extend(more.into_string());
+            }
+        }
+        match flag {
+            Some(flag) if numbers.len() > 1 || numbers.iter().any(|list| list.starts_with('-')) => {
+                let lists: Vec<&str> = numbers.iter().map(|list| list.trim_matches(',')).collect();
+                found.push(format!("{flag}={}", lists.join(",")).into());
+            }
+            _ => {
+                found.push(word.clone());
+                let is_within = word.to_str().is_some_and(|word| word.contains('='));
+                found.extend(numbers.into_iter().skip(usize::from(is_within)).map(OsString::from));
+            }
+        }
+    }
+    found
+}
+
 /// True for a quantity's name, or a list of names.
 fn is_quantity(word: &str) -> bool {
     word.split(',').all(|name| Query::named(name).is_ok())
@@ -86,5 +123,23 @@ mod tests {
             assert_eq!(of(line), expected);
         }
         assert!(of("mozzi rnea").contains("`rnea` needs a robot"));
+    }
+
+    #[test]
+    fn numbers_after_a_flag_are_one_value() {
+        for (line, expected) in [
+            ("mozzi fk ur5 --q 0 -90 90 --deg", "mozzi fk ur5 --q=0,-90,90 --deg"),
+            ("mozzi fk ur5 --q 0, -pi/2, 45deg", "mozzi fk ur5 --q=0,-pi/2,45deg"),
+            ("mozzi ik ur5 --position 0.4 0.1 0.3 --rpy pi 0 0", "mozzi ik ur5 --position=0.4,0.1,0.3 --rpy=pi,0,0"),
+            ("mozzi fk ur5 --q=0,1 2 -3", "mozzi fk ur5 --q=0,1,2,-3"),
+            ("mozzi fk ur5 --q -1,2", "mozzi fk ur5 --q=-1,2"),
+            ("mozzi simulate ur5 --time 1 --out 2.csv", "mozzi simulate ur5 --time 1 --out 2.csv"),
+            ("mozzi fk ur5 --q=0,1 --deg", "mozzi fk ur5 --q=0,1 --deg"),
+            ("mozzi convert - --as urdf", "mozzi convert - --as urdf"),
+            ("mozzi identify ur5 --theta-unit=deg 1 2", "mozzi identify ur5 --theta-unit=deg 1 2"),
+        ] {
+            let found = joined(line.split(' ').map(OsString::from).collect());
+            assert_eq!(found.join(std::ffi::OsStr::new(" ")).into_string().expect("text"), expected);
+        }
     }
 }

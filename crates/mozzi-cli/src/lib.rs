@@ -278,8 +278,8 @@ NaN in a state gives NaN in the results of that state only.";
 /// The arguments, and whether their outputs can be written; flags that have no effect are an error.
 fn parsed(words: Vec<OsString>) -> Result<(Arguments, Result<()>), clap::Error> {
     let mut program = numeric(Arguments::command());
-    let words =
-        guess::meant(words, &program).map_err(|said| program.error(ErrorKind::MissingRequiredArgument, said))?;
+    let words = guess::meant(guess::joined(words), &program)
+        .map_err(|said| program.error(ErrorKind::MissingRequiredArgument, said))?;
     let matches = program.try_get_matches_from_mut(&words).map_err(|error| tip::explained(error, &program, &words))?;
     effect::check(&mut program, &matches)?;
     let is_set = |matches: &clap::ArgMatches| matches.try_get_one("deg").ok().flatten().copied() == Some(true);

@@ -3,7 +3,7 @@
 use crate::controller::Controller;
 use crate::failure::{self, Failure, Result};
 use crate::input;
-use crate::numbers::{WRENCH, array, number};
+use crate::numbers::{WRENCH, array, is_number, number, numbers_for};
 use crate::robot::RobotArguments;
 use crate::tables::read as table_file;
 use crate::tables::samples::Samples;
@@ -45,9 +45,14 @@ const RESPONSE: f64 = 0.1;
 #[derive(Args, Debug)]
 pub struct MotorArguments {
     /// Motor torques: zero, gravity-compensation, actuators (those of an MJCF file with the controls of --state, and
-    /// its gravity compensation), or a table with columns t, tau_1, … (interpolated linearly); added to a
-    /// controller's [default: actuators if the file has some that act, else zero]
-    #[arg(long, value_name = "FILE|zero|gravity-compensation|actuators")]
+    /// its gravity compensation), numbers τ1,τ2,… that stay, or a table with columns t, tau_1, … (interpolated
+    /// linearly); added to a controller's [default: actuators if the file has some that act, else zero]
+    #[arg(
+        long,
+        alias = "tau",
+        value_name = "FILE|τ1,τ2,…|zero|gravity-compensation|actuators",
+        allow_hyphen_values = true
+    )]
     pub torque: Option<String>,
     /// Reference for the controller: a table with columns t, theta_1, … and optionally dtheta_, ddtheta_; with a
     /// floating base only the joints are followed, and the base's columns may be missing
@@ -207,6 +212,10 @@ impl MotorArguments {
             None | Some("zero" | ACTUATORS) => Box::new(Zero),
             Some("gravity-compensation" | "gravity" | "gravity_compensation") => {
                 Box::new(GravityCompensation::new(model))
+            }
+            Some(list) if !std::path::Path::new(list).exists() && list.split(',').all(is_number) => {
+                let constant = numbers_for("--torque", list, model.velocity_names())?;
+                Box::new(mozzi_sim::torque(move |_, _, _, tau| tau.copy_from_slice(&constant)))
             }
             Some(file) => {
                 let samples = table_file::read(file, model)?;

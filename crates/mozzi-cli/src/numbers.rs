@@ -64,6 +64,11 @@ fn with_unit(place: impl Display, text: &str) -> Result<(f64, Unit)> {
     }
 }
 
+/// True for a number or an angle as [`angle`] reads it.
+pub fn is_number(text: &str) -> bool {
+    value(&text.trim().replace('−', "-")).is_some()
+}
+
 /// "1.5", "pi/2", "-3pi/4", "2*pi", "1.5rad", and in degrees "45deg" or "45°".
 fn value(text: &str) -> Option<(f64, Unit)> {
     if let Ok(x) = text.parse() {

@@ -8,7 +8,7 @@ use mozzi_urdf::did_you_mean;
 use std::ffi::OsString;
 
 /// Flags of other programs, and what is meant.
-const MEANT: [(&str, &str); 19] = [
+const MEANT: [(&str, &str); 22] = [
     ("friction", "--contact-friction is that of the ground; joints have the friction of their file"),
     ("robot", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
     ("model", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
@@ -27,6 +27,9 @@ const MEANT: [(&str, &str); 19] = [
     ("csv", "--out FILE.csv writes a table"),
     ("output", "--out FILE writes the result"),
     ("o", "--out FILE writes the result"),
+    ("pose", "--position X,Y,Z and --rpy R,P,Y or --quaternion W,X,Y,Z are a pose"),
+    ("no-browser", "--out FILE.html writes the page"),
+    ("no-open", "--out FILE.html writes the page"),
     ("radians", "angles are in radians unless --deg is given"),
 ];
 
@@ -86,7 +89,7 @@ fn unknown(given: &str, program: &Command, command: &Command) -> String {
         name => format!("`mozzi {name} --help` lists its flags"),
     };
     if given.parse::<f64>().is_ok() {
-        return format!("a negative number belongs to its flag by `=`: --flag={given}");
+        return format!("a number needs its flag before it; {help}");
     }
     let Some(flag) = given.strip_prefix('-') else {
         return format!("a value needs its flag before it, such as --theta {given}; {help}");

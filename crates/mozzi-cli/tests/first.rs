@@ -100,12 +100,31 @@ fn tips_name_the_flag_or_the_command_that_has_it() {
         ("simulate ur5 --fext 1", "flags"),
         ("ik ur5 0.4,0.2,0.5", "a value needs its flag before it"),
         ("trajectory ur5 --dt 0.1 --until x", "--until is a flag of `mozzi simulate`"),
-        ("info ur5 -1", "--flag=-1"),
+        ("info ur5 -1", "a number needs its flag before it"),
     ] {
         let words: Vec<&str> = line.split(' ').collect();
         let (code, said) = complaint(&words);
         assert!(code == 2 && said.contains(tip) && !said.contains("as a value"), "{line}: {said}");
     }
+}
+
+#[test]
+fn numbers_of_a_flag_may_be_words() {
+    let list = json(&["compute", "ur5", "g", "--q=0,-90,45,0,30,0", "--deg"]);
+    assert_eq!(json(&["compute", "ur5", "g", "--q", "0", "-90", "45", "0", "30", "0", "--deg"]), list);
+    assert_eq!(json(&["compute", "ur5", "g", "--q", "0,", "-pi/2,", "45deg,", "0,", "30deg,", "0"]), list);
+    let page = text(&["ik", "ur5", "--position", "0.4", "0.1", "0.3", "--rpy", "pi", "0", "0"]);
+    assert!(page.contains("`tool0` reaches its goal"), "{page}");
+    let (_, said) = complaint(&["ik", "ur5", "0.4", "0.1", "0.3"]);
+    assert!(said.contains("a number needs its flag before it"), "{said}");
+}
+
+#[test]
+fn a_torque_may_be_numbers() {
+    let motion = json(&["simulate", "two_link_planar", "--tau", "31.392,-9.81", "--time", "0.002"]);
+    assert_eq!(motion["tau"], serde_json::json!(vec![[31.392, -9.81]; 3]));
+    let (_, said) = complaint(&["simulate", "two_link_planar", "--torque", "1"]);
+    assert!(said.contains("--torque has 1 entry, expected 2: joint1, joint2"), "{said}");
 }
 
 #[test]

@@ -23,9 +23,12 @@ use std::path::{Path, PathBuf};
 pub struct CodegenArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// The quantity to generate; may be repeated [default with --explain: all]
-    #[arg(long, value_name = "NAME", value_parser = quantity(), required_unless_present = "explain")]
+    /// The quantities to generate: M c g tau J_b … [default with --explain: all]
+    #[arg(value_name = "QUANTITY", value_parser = quantity(), required_unless_present_any = ["explain", "named"])]
     quantity: Vec<Query<'static>>,
+    /// A quantity to generate; may be repeated
+    #[arg(long = "quantity", value_name = "NAME", value_parser = quantity())]
+    named: Vec<Query<'static>>,
     /// Language of the source text
     #[arg(long, value_name = "LANGUAGE", value_parser = language(), requires = "out", required_unless_present = "explain")]
     lang: Option<Target>,
@@ -127,7 +130,7 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
         wrenches: &frames,
         derivative: if arguments.jvp { Derivative::RATES } else { Derivative::None },
     };
-    let mut queries = arguments.quantity.clone();
+    let mut queries = [arguments.quantity.as_slice(), &arguments.named].concat();
     if queries.is_empty() {
         let has_end = end_effector(&model).is_some();
         queries = (0..LIST.len()).map(Query::at).filter(|query| has_end || !is_of_a_frame(*query)).collect();

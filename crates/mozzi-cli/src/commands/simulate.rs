@@ -38,7 +38,7 @@ pub struct SimulateArguments {
     #[command(flatten)]
     ground: GroundArguments,
     /// Integration method
-    #[arg(long, default_value = "auto")]
+    #[arg(long, alias = "integrator", default_value = "auto")]
     method: Way,
     /// Step size, s; dopri: the time between two rows
     #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.001", allow_hyphen_values = true)]
