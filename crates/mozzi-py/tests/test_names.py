@@ -80,3 +80,38 @@ def test_sdformat_is_read_by_its_content(tmp_path):
         model = mozzi.Model.load(path)
     assert model.n == 1
     assert np.isclose(model.mass_matrix([0.0])[0, 0], 0.1 + 2 * 0.5**2)
+
+
+@pytest.mark.parametrize(
+    ("guess", "meant"),
+    [
+        ("rnea", r"`inverse_dynamics\(theta, dtheta, ddtheta\)`"),
+        ("M", r"`mass_matrix\(theta\)`"),
+        ("nv", "`n` is the number of velocities"),
+        ("jacobian", "`body_jacobian"),
+        ("ik", "`mozzi.InverseKinematics"),
+        ("jointnames", "did you mean `joint_names`"),
+        ("total_energy", "`kinetic_energy"),
+        ("zzz", "no attribute 'zzz'$"),
+    ],
+)
+def test_an_attribute_of_others_names_ours(ur5, guess, meant):
+    with pytest.raises(AttributeError, match=meant):
+        getattr(ur5, guess)
+    assert not hasattr(ur5, "__array__")
+
+
+def test_names_of_the_module_and_of_a_class_that_is_not_called():
+    for guess, meant in (("load", "mozzi.Model.load"), ("robots", "mozzi.models"), ("zzz", "'zzz'$")):
+        with pytest.raises(AttributeError, match=meant):
+            getattr(mozzi, guess)
+    with pytest.raises(TypeError, match=r"`mozzi.Model.load\(path\)` reads"):
+        mozzi.Model("ur5")
+
+
+def test_a_motion_starts_at_rest_and_takes_two_seconds(ur5):
+    short = ur5.simulate(THETA, duration=0.0105)
+    assert short.theta.shape == (12, 6) and not short.dtheta[0].any()
+    assert ur5.simulate(THETA).t[-1] == 2.0
+    many = ur5.simulate([THETA, THETA], duration=0.01)
+    assert many.theta.shape == (2, 11, 6)

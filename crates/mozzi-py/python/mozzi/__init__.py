@@ -4,6 +4,8 @@ Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. Forces
 positive.
 """
 
+from typing import TYPE_CHECKING
+
 from . import _quantities, controllers, conventions, models, modern_robotics, trajectories
 from ._compare import Comparison, compare
 from ._environment import Environment
@@ -90,3 +92,18 @@ __all__ = [
     "trajectories",
 ]
 __all__ += _quantities.__all__
+
+if not TYPE_CHECKING:  # for which every name would exist
+    _MEANT = {
+        "load": "mozzi.Model.load(path)",
+        "open": "mozzi.Model.load(path)",
+        "robots": "mozzi.models: ur5(), panda(), …, or mozzi.Model.load(name)",
+        "simulate": "mozzi.Model.simulate(theta, dtheta, duration, steps)",
+        "ik": "mozzi.InverseKinematics(model, frame)",
+        "inverse_kinematics": "mozzi.InverseKinematics(model, frame)",
+    }
+
+    def __getattr__(name: str) -> object:
+        """The name that was meant, for one that does not exist."""
+        meant = f": that is {_MEANT[name]}" if name in _MEANT else ""
+        raise AttributeError(f"module 'mozzi' has no attribute '{name}'{meant}", name=name)

@@ -137,7 +137,8 @@ class Model:
     # several starts.
     @overload
     def simulate(
-        self, theta: Sequence[float], dtheta: Sequence[float], duration: float, steps: int, *,
+        self, theta: Sequence[float], dtheta: Sequence[float] | None = None, duration: float = 2.0,
+        steps: int | None = None, *,
         torque: (
             Callable[[float, Array, Array], ArrayLike] | Sequence[float] | Literal["gravity_compensation"] | None
         ) = None,
@@ -151,7 +152,7 @@ class Model:
         """Simulate the motion from (θ(0), θ̇(0)) over `duration` seconds, in `steps` equal steps."""
     @overload
     def simulate(
-        self, theta: ArrayLike, dtheta: ArrayLike, duration: float, steps: int, *,
+        self, theta: ArrayLike, dtheta: ArrayLike | None = None, duration: float = 2.0, steps: int | None = None, *,
         torque: Callable[[float, Array, Array], ArrayLike] | ArrayLike | Literal["gravity_compensation"] | None = None,
         method: Literal["auto", "moreau", "rk4", "semi-implicit-euler", "euler", "dopri", "midpoint"] = "auto",
         tolerance: float | None = None, record_every: int = 1, until: _Events | None = None,

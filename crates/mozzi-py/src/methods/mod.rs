@@ -7,6 +7,7 @@ mod constraints;
 mod directional;
 mod documentation;
 mod edits;
+mod hints;
 mod load;
 mod play;
 mod positions;

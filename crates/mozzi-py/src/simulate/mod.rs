@@ -96,12 +96,13 @@ impl PyModel {
     /// ----------
     /// theta : array_like, shape (..., nq)
     ///     Positions at the start: rad or m.
-    /// dtheta : array_like, shape (..., n)
-    ///     Velocities at the start: rad/s or m/s.
+    /// dtheta : array_like, shape (..., n), optional
+    ///     Velocities at the start: rad/s or m/s. Default: at rest.
     /// duration : float
     ///     Duration, s.
-    /// steps : int
+    /// steps : int, optional
     ///     Number of steps, at least 1; for 'dopri', which chooses its steps, the number of intervals between rows.
+    ///     Default: steps of a millisecond.
     /// torque : callable, array_like, 'gravity_compensation' or None
     ///     The motors' τ, N m or N. A function `torque(t, theta, dtheta)` is called at each stage of each step and
     ///     returns shape (n,); with several starts it is called once per stage for all of them, on arrays of shapes
@@ -139,7 +140,7 @@ impl PyModel {
     ///     the surface moves with the velocity. Default: the ground z = 0.
     /// sticking : bool
     ///     Several starts only: False replaces sticking dry friction by μ sgn θ̇, under which joints creep and chatter,
-    ///     and integrates all robots together in registers, which is much faster. Robots with sticking dry friction,
+    ///     and integrates all robots together by machine code, which is much faster. Robots with sticking dry friction,
     ///     contacts, stops or a slip speed, and the methods 'moreau', 'dopri' and 'midpoint', are integrated one at a
     ///     time; `torque` must then not be a function.
     /// threads : int, optional
@@ -173,14 +174,14 @@ impl PyModel {
     /// >>> falls = pendulum.simulate(starts, [0.0, 0.0], 1.0, 100, record_every=10)
     /// >>> falls.t.shape, falls.theta.shape
     /// ((11,), (50, 11, 2))
-    #[pyo3(signature = (theta, dtheta, duration, steps, *, torque=None, method="auto", tolerance=None, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, contacts=None, planes=None, sticking=true, threads=None))]
+    #[pyo3(signature = (theta, dtheta=None, duration=2.0, steps=None, *, torque=None, method="auto", tolerance=None, record_every=1, until=None, events=None, joint_limits="report", gravity=None, slip_speed=None, contacts=None, planes=None, sticking=true, threads=None))]
     #[allow(clippy::too_many_arguments)] // Python's
     fn simulate<'py>(
         slf: &Bound<'py, Self>,
         theta: &Bound<'py, PyAny>,
-        dtheta: &Bound<'py, PyAny>,
+        dtheta: Given<'_, 'py>,
         duration: f64,
-        steps: usize,
+        steps: Option<usize>,
         torque: Given<'_, 'py>,
         method: &str,
         tolerance: Option<f64>,
@@ -201,7 +202,10 @@ impl PyModel {
             this.robot().check_shape(&numbers)?;
             Ok(numbers)
         };
-        let (mut theta, mut dtheta) = (numbers("theta", theta)?, numbers("dtheta", dtheta)?);
+        let at_rest = vec![0.0; this.robot().model.n()].into_pyobject(slf.py())?;
+        let (mut theta, mut dtheta) = (numbers("theta", theta)?, numbers("dtheta", dtheta.unwrap_or(&at_rest))?);
+        // of a millisecond, as of the command line; wrong durations are refused later
+        let steps = steps.unwrap_or_else(|| (1e3 * duration).ceil().max(1.0) as usize);
         let (method, joint_limits) = (simulation_method(method, tolerance)?, policy(joint_limits)?);
         let mut options = Options { method, record_every, joint_limits, ..Options::new(duration, steps) };
         let watched = Watched { until, events };
