@@ -180,16 +180,21 @@ fn contradictory_flags_are_refused() {
     assert!(said.contains("--within rod goes from 0 to -1 in y"), "{said}");
 }
 
-#[test]
-fn a_robot_whose_matrices_do_not_fit_is_refused_before_the_work() {
+/// A file with links that turn one on the other.
+fn chain(folder: &std::path::Path, links: usize) -> String {
     let mut chain = String::from("<robot name='chain'><link name='l0'/>");
-    for k in 1..=12_000 {
+    for k in 1..=links {
         chain += &format!(
             "<link name='l{k}'><inertial><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j{k}' type='continuous'><parent link='l{}'/><child link='l{k}'/></joint>",
             k - 1
         );
     }
-    let robot = file(&folder("chain"), "chain.urdf", &(chain + "</robot>"));
+    file(folder, &format!("chain{links}.urdf"), &(chain + "</robot>"))
+}
+
+#[test]
+fn a_robot_whose_matrices_do_not_fit_is_refused_before_the_work() {
+    let robot = chain(&folder("chain"), 12_000);
     for flags in [&["simulate", &*robot, "--time", "0.001"][..], &["compute", &*robot, "mass-matrix"]] {
         let (code, said) = complaint(flags);
         assert!(
@@ -197,6 +202,28 @@ fn a_robot_whose_matrices_do_not_fit_is_refused_before_the_work() {
             "{said}"
         );
     }
+}
+
+#[test]
+fn a_long_chain_is_refused_where_it_would_take_minutes() {
+    let folder = folder("long_chain");
+    let robot = chain(&folder, 2100);
+    let [xml, sdf, svg] = ["c.xml", "c.sdf", "c.svg"].map(|name| folder.join(name).to_str().expect("text").to_string());
+    for (words, expected) in [
+        (&["convert", &*robot, &*xml][..], "2101 bodies inside each other, expected at most 253"),
+        (&["terms", &*robot], "the robot has 2100 velocities, expected at most 1000 for all terms"),
+        (&["derive", &*robot, "g"], "the robot has 2100 moving links, expected at most 1000"),
+        (
+            &["compare", &*robot, &*robot],
+            "the robot has 2100 velocities, expected at most 2000 of one that is compared",
+        ),
+        (&["picture", &*robot, "--out", &*svg], "the number of links is 2101, expected at most 2000 in a picture"),
+        (&["bench", &*robot, "--states", "100000"], "expected at most 9 states"),
+    ] {
+        let (code, said) = complaint(words);
+        assert!(code == 1 && said.contains(expected), "{words:?}: {said}");
+    }
+    assert!(common::mozzi(&["convert", &robot, &sdf]).status.success());
 }
 
 #[test]

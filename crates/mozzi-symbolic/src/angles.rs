@@ -122,10 +122,8 @@ pub(crate) fn groups(model: &Model, theta: &[Symbol]) -> Vec<Group> {
             let place = members.iter().position(|&member| member == sources[other].joint)?;
             (place < members.iter().position(|&member| member == j)?).then_some((place, sign))
         };
-        groups.push(Group {
-            angles: members.iter().map(|&j| Angle::Joint { position: id(j), over: over(j) }).collect(),
-            before: members.iter().map(previous).collect(),
-        });
+        let angles = members.iter().map(|&j| Angle::Joint { position: id(j), over: over(j) }).collect();
+        groups.push(Group::new(angles, members.iter().map(previous).collect()));
     }
     groups
 }

@@ -5,7 +5,7 @@ use crate::atom::Class;
 use crate::collect::Grouping;
 use crate::cse;
 use crate::derivation::{Derivation, Formula};
-use crate::error::{Error, LONGEST};
+use crate::error::{Error, LONGEST, LONGEST_IN_ALL, MOST_LINKS};
 use crate::expression::Expression;
 use crate::kernel::{Kernel, check_fault};
 use crate::order::ranks;
@@ -47,6 +47,9 @@ pub(crate) fn described(
     text: Option<&str>,
     options: &Options,
 ) -> Result<(Description<Symbol>, Parameters), Error> {
+    if model.moving_links() > MOST_LINKS {
+        return Err(Error::TooManyLinks(model.moving_links()));
+    }
     start(Table::default());
     let mut parameters = Parameters::new(model, options.symbols, options.equal);
     let theta = angles::positions(model);
@@ -90,9 +93,11 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
     for output in &outputs {
         found.push(output.iter().map(|x| x.polynomial()).collect());
     }
-    let terms = found.iter().flatten().map(|p| p.terms().len()).max().unwrap_or(0);
-    if terms > LONGEST {
-        return Err(Error::TooLong { quantity, terms });
+    let terms = || found.iter().flatten().map(|p| p.terms().len());
+    for (terms, most) in [(terms().max().unwrap_or(0), LONGEST), (terms().sum(), LONGEST_IN_ALL)] {
+        if terms > most {
+            return Err(Error::TooLong { quantity, terms, most });
+        }
     }
     let mut formulas: Vec<Formula> = with_table(|table| {
         declaration

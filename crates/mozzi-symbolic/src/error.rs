@@ -5,6 +5,10 @@ use std::fmt;
 
 /// Longer entries are not derived: a person reads none of them, and grouping takes longer and longer.
 pub(crate) const LONGEST: usize = 30_000;
+/// The terms of all entries together.
+pub(crate) const LONGEST_IN_ALL: usize = 200_000;
+/// The moving links of a robot whose equations are derived.
+pub(crate) const MOST_LINKS: usize = 1000;
 
 /// The reason why there is no derivation.
 #[derive(Clone, Debug)]
@@ -23,12 +27,16 @@ pub enum Error {
     },
     /// The robot has no recursion in the book's form.
     NoRecursion(String),
+    /// The robot has so many moving links.
+    TooManyLinks(usize),
     /// The expressions would be too long.
     TooLong {
         /// The quantity.
         quantity: &'static str,
-        /// The terms of its largest entry.
+        /// The terms of an entry, of all entries, or on the way to them.
         terms: usize,
+        /// The most that there may be.
+        most: usize,
     },
     /// An expression differs from the kernel: an error of this library.
     NotProven {
@@ -59,11 +67,17 @@ impl fmt::Display for Error {
                 "the recursion is printed for joints that slide, or turn about an axis of their link, on a fixed base; \
                  the robot has {what}"
             ),
-            Error::TooLong { quantity, terms } => {
+            Error::TooManyLinks(links) => {
+                write!(
+                    f,
+                    "the robot has {links} moving links, expected at most {MOST_LINKS} of one whose equations are derived"
+                )
+            }
+            Error::TooLong { quantity, terms, most } => {
                 let quantity = quantity.replace('_', "-");
                 write!(
                     f,
-                    "{quantity} would have sums of {terms} terms, expected at most {LONGEST}. Numbers instead of symbols \
+                    "{quantity} would have sums of {terms} terms, expected at most {most}. Numbers instead of symbols \
                      are shorter (symbols: none), and so are robots with locked joints"
                 )
             }

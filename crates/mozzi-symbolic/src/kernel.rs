@@ -12,7 +12,7 @@ pub(crate) fn check_fault(quantity: &'static str) -> Result<(), Error> {
     match with_table(|table| table.fault.take()) {
         None => Ok(()),
         Some(Fault::Left(what)) => Err(Error::NotPolynomial { quantity, what }),
-        Some(Fault::TooLong(terms)) => Err(Error::TooLong { quantity, terms }),
+        Some(Fault::TooLong([terms, most])) => Err(Error::TooLong { quantity, terms, most }),
     }
 }
 
@@ -28,7 +28,8 @@ pub(crate) struct Kernel {
 impl Kernel {
     pub fn new(query: &Query, model: &Model<Symbol>, tip: Option<FrameId>) -> Result<Self, Error> {
         let quantity = query.name();
-        let too_long = |TooLong| Error::TooLong { quantity, terms: TooLong::MOST_STEPS };
+        let most = TooLong::MOST_STEPS;
+        let too_long = |TooLong| Error::TooLong { quantity, terms: most, most };
         let (program, numbers) = record_numbers(model, *query, tip.as_slice()).map_err(too_long)?;
         Ok(Kernel { program, numbers, inputs: query.declaration().inputs.len() })
     }

@@ -10,7 +10,7 @@ use crate::kernel::{Kernel, check_fault};
 use crate::point::Point;
 use crate::polynomial::Polynomial;
 use crate::rational::Rational;
-use crate::symbol::{Symbol, set_point, with_table};
+use crate::symbol::{Symbol, recount, set_point, with_table};
 use mozzi::quantities::Query;
 use mozzi::random::Random;
 use mozzi::{Environment, FrameId, Freedom, Model, Scalar, Wrench};
@@ -48,6 +48,7 @@ pub(crate) fn prove(
 ) -> Result<(), Error> {
     let mut random = Random(0x6d6f_7a7a_6921);
     for _ in 0..2 {
+        recount();
         let point = with_table(|table| Point::random(table, &mut random));
         let at = |x: Symbol| substituted(&point, &x.polynomial());
         // angles stay symbols, whose sines are numbers; other inputs are numbers
@@ -70,6 +71,7 @@ pub(crate) fn prove(
             for (entry, (expression, &expected)) in formula.entries.iter().zip(expected).enumerate() {
                 let (found, expected) = (expression.value(&atom, &plain, &values), at(expected));
                 if found != expected {
+                    check_fault(quantity)?;
                     let what = format!("{} instead of {}", f64::from(found), f64::from(expected));
                     return Err(Error::NotProven { quantity, entry, what });
                 }

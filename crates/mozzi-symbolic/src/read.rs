@@ -5,6 +5,7 @@ use mozzi::linalg::Sym3;
 use mozzi::model::description::{JointKind, Mimic};
 use mozzi::{Description, Real, SE3, SO3, ScrewAxis, SpatialInertia, Twist, Vec3};
 use roxmltree::{Document, Node};
+use std::collections::HashMap;
 use std::fmt;
 
 /// The reason why a file was not read a second time.
@@ -152,9 +153,14 @@ pub fn read_urdf<C: Real + Into<f64>>(
     number: impl FnMut(At, &str) -> Option<C>,
 ) -> Result<Description<C>, NotRead> {
     let document = Document::parse(text).map_err(|error| NotRead(error.to_string()))?;
+    let mut elements: HashMap<(&str, &str), Node> = HashMap::new();
+    for node in document.root_element().children() {
+        if let Some(name) = node.attribute("name") {
+            elements.entry((node.tag_name().name(), name)).or_insert(node);
+        }
+    }
     let named = |tag: &str, name: &str| {
-        let mut elements = document.root_element().children();
-        let found = elements.find(|node| node.has_tag_name(tag) && node.attribute("name") == Some(name));
+        let found = elements.get(&(tag, name)).copied();
         found.ok_or_else(|| NotRead(format!("there is no <{tag} name=\"{name}\">")))
     };
     let mut reader = Reader { number };

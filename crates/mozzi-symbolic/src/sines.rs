@@ -132,21 +132,11 @@ fn single(table: &mut Table, group: usize, angle: usize, is_cosine: bool) -> (Id
 fn cumulative(table: &Table, id: Id) -> Vec<i64> {
     let Atom::Trig(trig) = table.atom(id) else { return Vec::new() };
     let group = &table.groups[trig.group];
-    // the sign with which the first angle is in each sum
-    let sign_of = |mut at: usize| {
-        let mut sign = 1;
-        let mut first = at;
-        while let Some((before, turned)) = group.before[at] {
-            (at, sign) = (before, sign * turned);
-            first = first.min(at);
-        }
-        sign
-    };
     let mut k = vec![0; trig.harmonic.len()];
     for (i, times) in trig.harmonic.iter().enumerate() {
-        k[i] += times * sign_of(i);
+        k[i] += times * group.signs[i];
         if let Some((before, turned)) = group.before[i] {
-            k[before] -= times * turned * sign_of(before);
+            k[before] -= times * turned * group.signs[before];
         }
     }
     k

@@ -21,9 +21,14 @@ pub struct Symbol(u32);
 struct Session {
     table: Table,
     values: Vec<Rc<Polynomial>>,
+    /// The terms of all values.
+    terms: usize,
     /// Where sines are numbers at once: see `proof.rs`.
     point: Option<Point>,
 }
+
+/// Values of more terms in all are not computed: half a GB.
+const MOST_TERMS: usize = 4_000_000;
 
 thread_local! {
     static SESSION: RefCell<Session> = RefCell::default();
@@ -37,7 +42,7 @@ fn with<R>(f: impl FnOnce(&mut Session) -> R) -> R {
 pub(crate) fn start(table: Table) {
     let constants = [Rational::ZERO, Rational::ONE];
     let values = constants.map(|x| Rc::new(Polynomial::constant(x))).to_vec();
-    with(|session| *session = Session { table, values, point: None });
+    with(|session| *session = Session { table, values, terms: 0, point: None });
 }
 
 /// The atoms; the expressions are forgotten.
@@ -48,6 +53,11 @@ pub(crate) fn end() -> Table {
 /// The atoms.
 pub(crate) fn with_table<R>(f: impl FnOnce(&mut Table) -> R) -> R {
     with(|session| f(&mut session.table))
+}
+
+/// Counts the terms of values anew: a proof's are numbers.
+pub(crate) fn recount() {
+    with(|session| session.terms = 0);
 }
 
 /// From now on sines and cosines are those of this point.
@@ -68,6 +78,11 @@ impl Session {
             Some(x) if x.is_zero() => ZERO,
             Some(x) if x.is_one() => ONE,
             _ => {
+                self.terms += p.terms().len();
+                if self.terms > MOST_TERMS {
+                    self.table.fault.get_or_insert(Fault::TooLong([self.terms, MOST_TERMS]));
+                    return ZERO;
+                }
                 self.values.push(Rc::new(p));
                 Symbol(self.values.len() as u32 - 1)
             }
@@ -366,7 +381,7 @@ fn of_pi(table: &mut Table, k: &Rational) -> Option<(Polynomial, Polynomial)> {
 fn constant(table: &mut Table, k: &Rational) -> (Polynomial, Polynomial) {
     let angle = Angle::Constant(k.abs());
     let group = table.groups.iter().position(|group| group.angles.contains(&angle)).unwrap_or_else(|| {
-        table.groups.push(crate::table::Group { angles: vec![angle], before: vec![None] });
+        table.groups.push(crate::table::Group::new(vec![angle], vec![None]));
         table.groups.len() - 1
     });
     let sign = if k.is_negative() { -1 } else { 1 };

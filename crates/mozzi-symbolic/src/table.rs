@@ -12,6 +12,22 @@ pub(crate) struct Group {
     pub angles: Vec<Angle>,
     /// How each angle's cumulative sum ends: the index of the angle before, and the sign that it is added with.
     pub before: Vec<Option<(usize, i64)>>,
+    /// The sign with which the first angle is in each cumulative sum.
+    pub signs: Vec<i64>,
+}
+
+impl Group {
+    pub fn new(angles: Vec<Angle>, before: Vec<Option<(usize, i64)>>) -> Self {
+        let sign_of = |mut at: usize| {
+            let mut sign = 1;
+            while let Some((other, turned)) = before[at] {
+                (at, sign) = (other, sign * turned);
+            }
+            sign
+        };
+        let signs = (0..before.len()).map(sign_of).collect();
+        Group { angles, before, signs }
+    }
 }
 
 /// The atoms.
@@ -21,8 +37,6 @@ pub(crate) struct Table {
     known: HashMap<Atom, Id>,
     pub groups: Vec<Group>,
     products: HashMap<(Id, Id), Polynomial>,
-    /// The terms that were computed so far.
-    work: usize,
     /// Why there is no result, if an operation left the polynomials, or there are too many terms.
     pub fault: Option<Fault>,
 }
@@ -32,13 +46,12 @@ pub(crate) struct Table {
 pub(crate) enum Fault {
     /// The operation of the kernel that has no polynomial result.
     Left(String),
-    /// A product of this many terms.
-    TooLong(usize),
+    /// So many terms, and the most that there may be.
+    TooLong([usize; 2]),
 }
 
-/// A product of more terms is not computed, nor are more terms in all: a few seconds.
+/// A product of more terms is not computed.
 const MOST: usize = 500_000;
-const MOST_IN_ALL: usize = 20_000_000;
 
 impl Table {
     /// The index of an atom, which is added if it is new.
@@ -166,9 +179,8 @@ impl Table {
             _ => {}
         }
         let products = p.terms().len().saturating_mul(q.terms().len());
-        self.work = self.work.saturating_add(products);
-        if self.fault.is_some() || products > MOST || self.work > MOST_IN_ALL {
-            self.fault.get_or_insert(Fault::TooLong(products));
+        if self.fault.is_some() || products > MOST {
+            self.fault.get_or_insert(Fault::TooLong([products, MOST]));
             return Polynomial::default();
         }
         let mut sum = Sum::default();

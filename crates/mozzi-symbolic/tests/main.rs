@@ -1,6 +1,7 @@
 //! Derivations: the book's equations letter by letter, SymPy's own Lagrangian derivation, one text for one robot.
 
 mod book;
+mod bounds;
 mod canonical;
 mod lagrange;
 mod printed;

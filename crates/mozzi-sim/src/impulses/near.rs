@@ -3,6 +3,7 @@
 
 use super::{Impulses, Key};
 use crate::contacts::{Contacts, Surface, Touch};
+use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use mozzi::kinematics::forward_kinematics;
 use mozzi::linalg::Vec3;
@@ -33,12 +34,11 @@ struct Candidate {
 impl Cloud {
     /// One for each frame with points.
     pub fn all(contacts: &Contacts) -> Vec<Self> {
-        let mut frames: Vec<FrameId> = contacts.points.iter().map(|point| point.frame).collect();
-        frames.sort_unstable();
-        frames.dedup();
-        let of_frame = |frame| {
-            let points: Vec<usize> =
-                (0..contacts.points.len()).filter(|&k| contacts.points[k].frame == frame).collect();
+        let mut frames: BTreeMap<FrameId, Vec<usize>> = BTreeMap::new();
+        for (k, point) in contacts.points.iter().enumerate() {
+            frames.entry(point.frame).or_default().push(k);
+        }
+        let of_frame = |(frame, points): (FrameId, Vec<usize>)| {
             let at = |k: usize| contacts.points[k].center.0;
             let side = |i: usize, pick: fn(f64, f64) -> f64| points.iter().map(|&k| at(k)[i]).reduce(pick);
             let middle = |i| 0.5 * (side(i, f64::min).unwrap_or(0.0) + side(i, f64::max).unwrap_or(0.0));

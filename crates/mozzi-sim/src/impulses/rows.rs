@@ -5,6 +5,7 @@ use crate::Error;
 use crate::contacts::{Surface, Touch};
 use crate::factored_mass::Support;
 use crate::one_sided::Law;
+use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
 use mozzi::constraints::constraint_jacobian;
@@ -59,6 +60,9 @@ impl System {
         &self.w - &self.J * DVectorView::from_slice(dtheta, dtheta.len())
     }
 }
+
+/// Rows that act at once: their matrix G has 300 MB.
+const MOST_ROWS: usize = 6000;
 
 impl Impulses<'_> {
     /// The velocities of the surroundings as seen from the robot at (t, θ, θ̇), along the rows of a system, which was
@@ -139,7 +143,15 @@ impl Impulses<'_> {
             w.push(0.0);
         }
         let mut columns = (None, Vec::new());
-        for (point, plane, touch) in self.near([t, t + 0.5 * h], theta, next) {
+        let near = self.near([t, t + 0.5 * h], theta, next);
+        let all = w.len() + 3 * near.len();
+        if all > MOST_ROWS {
+            let what = "the number of forces at contacts, stops and constraints";
+            return Err(
+                mozzi::Error::BadArgument { what, found: all.to_string(), expected: "at most 6000 at once" }.into()
+            );
+        }
+        for (point, plane, touch) in near {
             let key = Key::Contact(point, plane);
             let of = &self.contacts.points[point];
             let first = w.len();

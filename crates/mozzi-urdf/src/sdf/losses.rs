@@ -61,7 +61,8 @@ pub(super) fn of(d: &Description) -> Vec<String> {
 /// Links without mass.
 pub(super) fn refused_by_gazebo(d: &Description) -> Option<String> {
     let base = base_link(d).map(|link| link.name.as_str());
-    let is_massless = |name: &str| !(has_world(d) && Some(name) == base);
+    let has_world = has_world(d);
+    let is_massless = |name: &str| !(has_world && Some(name) == base);
     let empty: Vec<&str> = (d.links.iter())
         .filter(|link| link.inertia.mass == 0.0 && is_massless(&link.name))
         .map(|link| link.name.as_str())

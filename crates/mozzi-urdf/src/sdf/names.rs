@@ -30,7 +30,8 @@ impl Names {
             taken.insert(written.clone());
             (name.to_string(), safe(&written))
         };
-        let is_world = |name: &str| has_world(d) && name == "world";
+        let has_world = has_world(d);
+        let is_world = |name: &str| has_world && name == "world";
         let links =
             d.links.iter().filter(|link| !is_world(&link.name)).map(|link| settle(&link.name, "_link")).collect();
         let frames = d.frames.iter().map(|frame| settle(&frame.name, "_frame")).collect();

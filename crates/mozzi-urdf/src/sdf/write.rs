@@ -38,8 +38,9 @@ fn reasons(d: &Description) -> Vec<String> {
     let is_control = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     let names = d.links.iter().map(|link| &link.name).chain(d.joints.iter().map(|joint| &joint.name)).chain([&d.name]);
     reasons.extend(names.filter(|name| name.contains(is_control)).map(|name| format!("the name {name:?}")));
+    let has_world = has_world(d);
     for joint in d.joints.iter().filter(|joint| joint.kind == JointKind::Free) {
-        let is_plain = has_world(d) && joint.parent == "world" && joint.origin == SE3::identity();
+        let is_plain = has_world && joint.parent == "world" && joint.origin == SE3::identity();
         if !is_plain {
             reasons.push(format!("joint `{}`: a free joint that does not begin at the world's origin", joint.name));
         }
@@ -64,7 +65,8 @@ fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
         pose_element(text, "    ", SE3::from_pose(pose), None)?;
     }
     let above: BTreeMap<&str, &Joint> = d.joints.iter().map(|joint| (joint.child.as_str(), joint)).collect();
-    let is_world = |link: &str| has_world(d) && link == "world";
+    let has_world = has_world(d);
+    let is_world = |link: &str| has_world && link == "world";
     for each in d.links.iter().filter(|link| !is_world(&link.name)) {
         let joint = above.get(each.name.as_str()).copied();
         let place = joint
@@ -72,7 +74,7 @@ fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
             .map(|joint| (joint.origin, (!is_world(&joint.parent)).then(|| names.link(&joint.parent))));
         link(text, each, names, place)?;
     }
-    if let Some(base) = base_link(d).filter(|_| d.base == Base::Fixed && !has_world(d)) {
+    if let Some(base) = base_link(d).filter(|_| d.base == Base::Fixed && !has_world) {
         let child = names.link(&base.name);
         writeln!(
             text,

@@ -12,6 +12,7 @@ use crate::quantity::{hyphenated, is_of_a_frame, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use crate::workload;
 use clap::Args;
+use mozzi::Model;
 use mozzi::quantities::{Declaration, LIST, Of, Query, Uses};
 use mozzi_engine::Batch;
 use runs::{Data, Run, Subject};
@@ -21,13 +22,19 @@ use timing::{Report, Timing};
 /// Relative to the largest entry: a larger difference between one state and many cannot be rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// States in a batch, and the numbers of its results, by default.
+const USUAL_STATES: u32 = 16384;
+const USUAL_NUMBERS: usize = 32_000_000;
+/// The numbers of a batch's results: with copies for each way, some GB.
+const MOST_NUMBERS: usize = 128_000_000;
+
 #[derive(Args, Debug)]
 pub struct BenchArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// States in a batch
-    #[arg(long, value_name = "N", default_value_t = 16384, value_parser = clap::value_parser!(u32).range(1..))]
-    states: u32,
+    /// States in a batch [default: 16384, fewer if results take more than 256 MB]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    states: Option<u32>,
     /// Threads of the second table [default: one per core]
     #[arg(long, value_name = "K")]
     threads: Option<usize>,
@@ -77,7 +84,8 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     let queries: Vec<Query> =
         asked.map(|query| tip.filter(|_| is_of_a_frame(query)).map_or(query, |tip| query.of(tip))).collect();
     let threads = arguments.threads.unwrap_or_else(|| Batch::<f64>::of(&model).threads());
-    let data = Data::new(&model, arguments.states as usize);
+    let states = states(arguments.states, &model, &queries)?;
+    let data = Data::new(&model, states as usize);
     let single = data.to_f32();
 
     interrupt::listen();
@@ -92,8 +100,8 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
         progress.at(done);
     }
     drop(progress);
-    let (BenchArguments { states, rounds, .. }, complete) = (arguments, done == queries.len());
-    let report = Report { processor: processor(), states: *states, rounds: *rounds, threads, complete, timings };
+    let (rounds, complete) = (arguments.rounds, done == queries.len());
+    let report = Report { processor: processor(), states, rounds, threads, complete, timings };
     let text =
         if arguments.robot.json { page::object(&model, &report) } else { page::page(&model, &report, arguments.all) };
     if complete {
@@ -101,6 +109,21 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     }
     failure::note(&format!("stopped by Ctrl-C: these are {done} of {} quantities", queries.len()));
     Err(Failure::Stopped(text))
+}
+
+/// The number of states in a batch: as asked, or as many as have results of the default size.
+fn states(asked: Option<u32>, model: &Model, queries: &[Query]) -> Result<u32> {
+    let numbers = queries.iter().map(|query| query.output_lengths(model).sum::<usize>()).max().unwrap_or(0).max(1);
+    let most = |numbers_in_all: usize| u32::try_from(numbers_in_all / numbers).unwrap_or(u32::MAX).max(1);
+    let Some(states) = asked else { return Ok(most(USUAL_NUMBERS).min(USUAL_STATES)) };
+    if states > most(MOST_NUMBERS) {
+        let bytes = workload::size(8.0 * numbers as f64 * f64::from(states));
+        let most = most(MOST_NUMBERS);
+        return Err(Failure::wrong(format!(
+            "--states {states}: a result takes {bytes}, expected at most {most} states"
+        )));
+    }
+    Ok(states)
 }
 
 /// Compares with one state, then times all in turn; nothing after Ctrl-C.

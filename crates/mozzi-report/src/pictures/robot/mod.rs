@@ -61,12 +61,20 @@ pub struct RobotPicture {
     pub notes: Vec<String>,
 }
 
+/// Each body is compared with those that it overlaps.
+const MOST_LINKS: usize = 2000;
+
 /// The robot at θ, as SVG, by parallel projection: the shapes of its links, meshes as their convex hulls; bones for
 /// bodies without shapes; the axes of joints and the centre of mass of all that moves. Farther bodies are drawn first.
 ///
 /// # Errors
-/// [`Error::WrongLength`].
+/// [`Error::WrongLength`]; [`Error::BadArgument`] of more than 2000 links.
 pub fn robot(model: &Model, theta: &[f64], drawing: &Drawing, look: &Look) -> Result<RobotPicture, Error> {
+    let links = model.description().links.len();
+    if links > MOST_LINKS {
+        let (what, found) = ("the number of links", links.to_string());
+        return Err(Error::BadArgument { what, found, expected: "at most 2000 in a picture" });
+    }
     let skeleton = Skeleton::new(model, theta)?;
     let P = Projection::of(look.view);
     let mut notes = Vec::new();

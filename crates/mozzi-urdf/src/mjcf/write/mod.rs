@@ -4,6 +4,7 @@ mod equality;
 mod keyframe;
 mod losses;
 
+use crate::text::scan::MOST_DEPTH;
 use crate::urdf::write::{escaped, triple};
 use crate::written::{NotWritten, Written};
 use equality::Site;
@@ -38,6 +39,10 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
     if let Some(link) = d.links.iter().find(|link| link.name == "world" && !plan.is_world("world")) {
         reasons.push(format!("link `{}`, which has mass or moves", link.name));
     }
+    let depth = plan.depth();
+    if depth > DEEPEST {
+        reasons.push(format!("{depth} bodies inside each other, expected at most {DEEPEST}"));
+    }
     if !reasons.is_empty() {
         return Err(NotWritten { language: "MJCF", reasons });
     }
@@ -50,6 +55,9 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
         remarks: losses::refused_by_mujoco(d, &plan).into_iter().collect(),
     })
 }
+
+/// Bodies inside each other that are read again: `<mujoco>`, `<worldbody>` and a body's own elements are around them.
+const DEEPEST: usize = MOST_DEPTH - 3;
 
 /// How the tree is written.
 struct Plan<'d> {
@@ -82,6 +90,16 @@ impl<'d> Plan<'d> {
     fn is_world(&self, link: &str) -> bool {
         let is_base = self.base.is_some_and(|base| base.name == link && base.inertia.mass == 0.0);
         link == "world" && is_base && self.d.base == Base::Fixed
+    }
+
+    /// How many bodies are inside each other.
+    fn depth(&self) -> usize {
+        let (mut open, mut deepest) = (Vec::from_iter(self.base.map(|base| (base.name.as_str(), 1))), 0);
+        while let Some((link, depth)) = open.pop() {
+            deepest = deepest.max(depth);
+            open.extend(self.below.get(link).into_iter().flatten().map(|joint| (joint.child.as_str(), depth + 1)));
+        }
+        deepest
     }
 
     /// The joint after a link without mass and frames, which MuJoCo could not have between two joints.
