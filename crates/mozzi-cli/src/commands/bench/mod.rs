@@ -111,7 +111,7 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     Err(Failure::Stopped(text))
 }
 
-/// The number of states in a batch: as asked, or as many as have results of the default size.
+/// The number of states in a batch: the given one, or as many as have results of the default size.
 fn states(asked: Option<u32>, model: &Model, queries: &[Query]) -> Result<u32> {
     let numbers = queries.iter().map(|query| query.output_lengths(model).sum::<usize>()).max().unwrap_or(0).max(1);
     let most = |numbers_in_all: usize| u32::try_from(numbers_in_all / numbers).unwrap_or(u32::MAX).max(1);
