@@ -3,21 +3,23 @@
 use crate::urdf::write::free;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Vec3};
+use std::collections::BTreeSet;
 
 /// Rewrites a robot for [`write`](crate::write): every further frame is a link without mass on a fixed joint, and a
 /// revolute joint whose axis misses the child's frame turns a new link on its axis, to which the child is fixed. Joints
 /// keep their names and order; the motion of all links is the same.
 pub fn expressible(description: &Description) -> Description {
     let mut robot = Description { joints: Vec::new(), frames: Vec::new(), ..description.clone() };
+    let mut names = Names::of(description);
     for joint in &description.joints {
         match axis_point(joint) {
-            Some(point) => turn_on_axis(joint, point, description, &mut robot),
+            Some(point) => turn_on_axis(joint, point, &mut names, &mut robot),
             None => robot.joints.push(joint.clone()),
         }
     }
     for frame in &description.frames {
         robot = robot.link(&frame.name, SpatialInertia::zero());
-        let name = joint_name(&frame.name, description, &robot);
+        let name = names.joint(&format!("{}_joint", frame.name));
         robot = robot.joint(Joint::new(name, &frame.link, &frame.name, frame.T, JointKind::Fixed));
     }
     robot
@@ -31,15 +33,11 @@ fn axis_point(joint: &Joint) -> Option<Vec3> {
 }
 
 /// M exp(Aθ) = M Trans(q) · exp((ω, 0)θ) · Trans(−q)
-fn turn_on_axis(joint: &Joint, q: Vec3, before: &Description, robot: &mut Description) {
+fn turn_on_axis(joint: &Joint, q: Vec3, names: &mut Names, robot: &mut Description) {
     let JointKind::Screw(A) = joint.kind else { return };
     let Ok(axis) = ScrewAxis::new(A.twist().w.0, [0.0; 3]) else { return };
-    let taken = |name: &str| {
-        [before, robot].iter().any(|d| d.links.iter().any(|link| link.name == name))
-            || before.frames.iter().any(|frame| frame.name == name)
-    };
-    let link = free(&format!("{}_axis", joint.name), taken);
-    let name = joint_name(&link, before, robot);
+    let link = names.link(&format!("{}_axis", joint.name));
+    let name = names.joint(&format!("{link}_joint"));
     robot.joints.push(Joint {
         origin: joint.origin * SE3::translation(q.0),
         kind: JointKind::Screw(axis),
@@ -50,9 +48,30 @@ fn turn_on_axis(joint: &Joint, q: Vec3, before: &Description, robot: &mut Descri
     robot.links.push(mozzi::model::description::Link { name: link, inertia: SpatialInertia::zero() });
 }
 
-/// A name for the fixed joint of a link.
-fn joint_name(link: &str, before: &Description, robot: &Description) -> String {
-    free(&format!("{link}_joint"), |name| {
-        [before, robot].iter().any(|d| d.joints.iter().any(|joint| joint.name == name))
-    })
+/// The names that are taken.
+struct Names {
+    /// Links and frames.
+    links: BTreeSet<String>,
+    joints: BTreeSet<String>,
+}
+
+impl Names {
+    fn of(d: &Description) -> Self {
+        let links = d.links.iter().map(|link| &link.name).chain(d.frames.iter().map(|frame| &frame.name));
+        Names { links: links.cloned().collect(), joints: d.joints.iter().map(|joint| joint.name.clone()).collect() }
+    }
+
+    /// A name for a new link.
+    fn link(&mut self, name: &str) -> String {
+        let name = free(name, |name| self.links.contains(name));
+        self.links.insert(name.clone());
+        name
+    }
+
+    /// A name for a new joint.
+    fn joint(&mut self, name: &str) -> String {
+        let name = free(name, |name| self.joints.contains(name));
+        self.joints.insert(name.clone());
+        name
+    }
 }
