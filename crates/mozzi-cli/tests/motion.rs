@@ -322,3 +322,27 @@ fn machine_code_makes_the_same_motion() {
         assert_close(&end(&compiled), &end(&plain), 1e-9);
     }
 }
+
+#[test]
+fn the_midpoint_rule_halves_a_step_that_is_too_long() {
+    // its iteration diverges at 50 ms: θ of 10⁸ once had no regular M
+    let motion = json(&[
+        "simulate",
+        "panda",
+        "--theta=0,1,0,-1,0,1,0,0",
+        "--dtheta=3,-3,3,3,-4,2,4,0",
+        "--method",
+        "midpoint",
+        "--step",
+        "0.05",
+        "--time",
+        "2",
+    ]);
+    let column =
+        |name: &str| -> Vec<f64> { motion[name].as_array().unwrap().iter().filter_map(|x| x.as_f64()).collect() };
+    let [kinetic, potential, lost] = ["kinetic_energy", "potential_energy", "friction_loss"].map(column);
+    let all: Vec<f64> = (0..kinetic.len()).map(|k| kinetic[k] + potential[k] + lost[k]).collect();
+    let [low, high] = [f64::min, f64::max].map(|pick| all.iter().copied().reduce(pick).unwrap());
+    let most = kinetic.iter().copied().fold(0.0, f64::max);
+    assert!(kinetic.len() == 41 && high - low < 0.2 * most, "{low} to {high}, {most}");
+}

@@ -109,3 +109,45 @@ fn few(mut all: Vec<Candidate>) -> Vec<Candidate> {
     });
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{CARRIED, Candidate, MOST, few};
+    use crate::contacts::Touch;
+    use alloc::vec::Vec;
+    use mozzi::linalg::Vec3;
+
+    fn candidate(point: usize, [x, y]: [f64; 2], gap: f64) -> Candidate {
+        let zero = Vec3::zero();
+        let touch = Touch {
+            at: Vec3([x, y, 0.0]),
+            of_frame: zero,
+            R: mozzi::SO3::identity(),
+            axes: [zero; 3],
+            speeds: [0.0; 3],
+            gap,
+        };
+        Candidate { point, touch, gap, carried: false }
+    }
+
+    #[test]
+    fn of_many_points_the_deepest_and_the_outermost_count() {
+        // a grid of 11 × 11, deepest near the middle
+        let grid = |k: usize| [(k % 11) as f64 - 5.0, (k / 11) as f64 - 5.0];
+        let all = || (0..121).map(|k| candidate(k, grid(k), if k == 61 { -1e-6 } else { 0.0 })).collect::<Vec<_>>();
+        let points = |found: &[Candidate]| found.iter().map(|one| one.point).collect::<Vec<_>>();
+        let found = few(all());
+        assert_eq!(found.len(), MOST);
+        for corner in [0, 10, 110, 120, 61] {
+            assert!(points(&found).contains(&corner), "{corner} in {:?}", points(&found));
+        }
+        assert!(found.is_sorted_by_key(|one| one.point));
+        // of points that are as far, those that carried before
+        let mut again = all();
+        again.iter_mut().filter(|one| [55, 65].contains(&one.point)).for_each(|one| one.carried = true);
+        assert!(CARRIED > 1.0 && points(&few(again)).contains(&55));
+        // at one place there is one
+        assert_eq!(few((0..20).map(|k| candidate(k, [1.0, 2.0], 0.0)).collect()).len(), 1);
+        assert_eq!(few((0..8).map(|k| candidate(k, [1.0, 2.0], 0.0)).collect()).len(), 8);
+    }
+}

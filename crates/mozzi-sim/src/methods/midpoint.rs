@@ -31,6 +31,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// v is found by iteration, to rounding; more than this many means that the step is too long.
 const ITERATIONS: usize = 60;
+/// Velocities this many times the first guess, plus 1, mean that the iteration diverges.
+const AWAY: f64 = 1e3;
 /// A step is halved at most to this part of it.
 const SHORTEST: f64 = 1.0 / 64.0;
 
@@ -112,7 +114,7 @@ impl Midpoint {
         let mut v = DVector::from_iterator(n, from.dtheta.iter().zip(&from.ddtheta).map(|(v, a)| v + half * a));
         let (mut theta, mut last, mut done) = (from.theta.clone(), f64::INFINITY, false);
         let curved = || model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One);
-        let mut worst = None;
+        let (mut worst, most) = (None, AWAY * (1.0 + v.amax()));
         let (mut powers, mut M, mut after) = ([0.0; 3], DMatrix::zeros(0, 0), DVector::zeros(n));
         for _ in 0..ITERATIONS {
             theta.copy_from_slice(&from.theta);
@@ -137,6 +139,10 @@ impl Midpoint {
             }
             let mut next = momentum;
             driven.mass.divide(next.as_mut_slice());
+            if next.amax() > most {
+                worst = (n > 0).then(|| next.iamax());
+                break; // θ without meaning, and M without its rank, come next
+            }
             let differences = &next - &v;
             worst = (n > 0).then(|| differences.iamax());
             let change = differences.amax() / (1.0 + next.amax());

@@ -226,7 +226,7 @@ impl Moreau {
         let mut p = impulses.guess(&system, h);
         let (mut v_m, mut force) = (v.clone(), vec![0.0; n]);
         let (mut after, mut last, mut solved, mut given) = (v.clone(), v.clone(), None, 0.0);
-        let mut to = Phase { t: end, ..state.clone() };
+        let mut to = state.clone();
         let (mut change, mut settles) = (f64::INFINITY, true);
         for pass in 0..PASSES {
             let start = after.clone();

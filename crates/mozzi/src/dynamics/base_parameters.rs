@@ -106,7 +106,7 @@ impl BaseParameters {
         let mut text = self.parameters[own].clone();
         for (k, &c) in self.combination.row(row).iter().enumerate() {
             if k != own && c.abs() >= INDEPENDENT {
-                let (sign, size) = (if c < 0.0 { '-' } else { '+' }, c.abs());
+                let (sign, size) = (if c.is_sign_negative() { '-' } else { '+' }, c.abs());
                 let factor =
                     if (size - 1.0).abs() < INDEPENDENT { String::new() } else { format!("{} ", Rounded(size)) };
                 text.push_str(&format!(" {sign} {factor}{}", self.parameters[k]));

@@ -206,6 +206,19 @@ mod tests {
     }
 
     #[test]
+    fn quaternions_have_a_scalar_part_of_at_least_0() {
+        for axis in [[1.0_f64, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, 0.0, -0.8], [-0.6, 0.48, 0.64]] {
+            for angle in [0.1, 1.5, 2.5, 3.1, -1.5, -2.5, -3.1] {
+                let w = Vec3(axis) * angle;
+                let (s, v) = SO3::exp(w).quaternion();
+                let half = 0.5_f64 * angle;
+                assert!((s - half.cos()).abs() < 4.0 * f64::EPSILON && s >= 0.0, "{s} of {angle} about {axis:?}");
+                assert!((v - Vec3(axis) * half.sin()).norm() < 4.0 * f64::EPSILON, "{v:?}");
+            }
+        }
+    }
+
+    #[test]
     fn a_half_turn_has_its_axis() {
         for axis in [[1.0_f64, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, 0.0, -0.8]] {
             let R = SO3(Mat3::from_rows(
