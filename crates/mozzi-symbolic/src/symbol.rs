@@ -50,7 +50,6 @@ pub(crate) fn end() -> Table {
     with(std::mem::take).table
 }
 
-/// The atoms.
 pub(crate) fn with_table<R>(f: impl FnOnce(&mut Table) -> R) -> R {
     with(|session| f(&mut session.table))
 }
