@@ -18,6 +18,7 @@ const WRITTEN: &[(&str, &str)] = &[
     ("docs/agreement.md", "cargo xtask test"),
     ("docs/arm.md", "cargo xtask jit-report"),
     ("docs/campaign.md", "cargo xtask campaign"),
+    ("docs/coverage.md", "cargo xtask coverage"),
     ("docs/diagnostics.md", "cargo xtask docs"),
     ("docs/gpu.md", "cargo xtask gpu-report"),
     ("docs/mutants.md", "cargo xtask mutants"),
