@@ -16,6 +16,7 @@ mod many_states;
 mod programs;
 mod quantities_page;
 mod refused;
+mod rollouts;
 mod rule;
 mod sticking;
 mod ways;
