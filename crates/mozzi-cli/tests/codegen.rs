@@ -123,7 +123,7 @@ fn wrong_usage_is_told() {
         &[&["ur5", "--quantity", "inverse-dynamic"][..], &rest].concat(),
         &["`inverse-dynamic`", "`inverse-dynamics`"],
     );
-    usage(&[&["ur5"][..], &rest].concat(), &["--quantity"]);
+    usage(&[&["ur5"][..], &rest].concat(), &["<QUANTITY>...", "such as M, C, g"]);
     usage(&[&["ur5", "--quantity", "mass-matrix", "--argument", "mass"][..], &rest].concat(), &["wrench=FRAME"]);
     usage(&["ur5", "--quantity", "mass-matrix", "--lang", "c"], &["--out"]);
     usage(&["ur5", "--quantity", "mass-matrix", "--lang", "fortran", "--out", "x"], &["fortran", "rust, c, cuda"]);
