@@ -64,6 +64,15 @@ pub fn square(what: &str, n: usize) -> Result<()> {
     Ok(())
 }
 
+/// Refuses a robot of more velocities; `of` ends the sentence.
+pub fn at_most(most: usize, model: &Model, of: &str) -> Result<()> {
+    let n = model.n();
+    if n > most {
+        return Err(Failure::wrong(format!("the robot has {n} velocities, expected at most {most} {of}")));
+    }
+    Ok(())
+}
+
 impl Workload {
     /// Announces the workload, or refuses it unless it is allowed.
     pub fn check(&self, is_allowed: bool) -> Result<()> {

@@ -1,4 +1,4 @@
-//! What MJCF says beyond the tree: constraints as equalities, named states as keys; written, and read again.
+//! The MJCF writer: constraints become equalities and named states become keys; the reader reads the same robot.
 #![allow(clippy::unwrap_used)]
 
 use crate::constraints::rows;

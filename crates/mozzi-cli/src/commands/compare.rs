@@ -6,9 +6,9 @@ use crate::failure::{Failure, Result};
 use crate::json;
 use crate::numbers::number;
 use crate::robot::PolicyArguments;
-use crate::{input, robot_json};
+use crate::{input, robot_json, workload};
 use clap::Args;
-use mozzi::{Description, Model};
+use mozzi::Description;
 use mozzi_report::compare::files::{RobotFile, compare_files};
 use mozzi_report::compare::{Options, Source, ask, compare, find_python};
 use mozzi_urdf::expanded;
@@ -54,7 +54,7 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
     let options = Options { python, states, seed, time_limit: arguments.time_limit()? };
     let (headline, comparison) = match arguments.policy.model(&arguments.model) {
         Ok(model) => {
-            not_too_large(&model)?;
+            workload::at_most(MOST, &model, "of one that is compared")?;
             let comparison = compare(&model, arguments.source(model.description())?, &options)?;
             (info::headline(&model) + "\n", comparison)
         }
@@ -74,16 +74,6 @@ pub fn run(arguments: &CompareArguments) -> Result<String> {
 /// Velocities of a robot that is compared: M at each state takes memory.
 const MOST: usize = 2000;
 
-fn not_too_large(model: &Model) -> Result<()> {
-    let n = model.n();
-    match n > MOST {
-        true => Err(Failure::wrong(format!(
-            "the robot has {n} velocities, expected at most {MOST} of one that is compared"
-        ))),
-        false => Ok(()),
-    }
-}
-
 /// Two files, which mozzi reads both.
 fn two_files(arguments: &CompareArguments, other: &str) -> Result<String> {
     let tolerance = number("--tolerance", &arguments.tolerance)?;
@@ -95,7 +85,7 @@ fn two_files(arguments: &CompareArguments, other: &str) -> Result<String> {
     let is_short = short(&arguments.model) != short(other);
     let file = |name: &str| -> Result<RobotFile> {
         let (model, inertial_axes) = arguments.policy.model_and_axes(name)?;
-        not_too_large(&model)?;
+        workload::at_most(MOST, &model, "of one that is compared")?;
         // shapes only suggest reasons: a file without readable shapes has none
         let shapes = match name {
             "-" => Vec::new(),

@@ -204,7 +204,7 @@ impl PyModel {
         };
         let at_rest = vec![0.0; this.robot().model.n()].into_pyobject(slf.py())?;
         let (mut theta, mut dtheta) = (numbers("theta", theta)?, numbers("dtheta", dtheta.unwrap_or(&at_rest))?);
-        // of a millisecond, as of the command line; wrong durations are refused later
+        // the default step is a millisecond, as in `mozzi simulate`; a wrong duration is refused below
         let steps = steps.unwrap_or_else(|| (1e3 * duration).ceil().max(1.0) as usize);
         let (method, joint_limits) = (simulation_method(method, tolerance)?, policy(joint_limits)?);
         let mut options = Options { method, record_every, joint_limits, ..Options::new(duration, steps) };

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 const MOST_POSITIONS: usize = 1_000_000;
 
 /// MuJoCo's initial state.
-const QPOS0: &str = "qpos0";
+pub(super) const QPOS0: &str = "qpos0";
 
 /// Tolerance on a mimic joint's number against its source joint's, rad or m, and per second; relative above 1. MuJoCo's
 /// solver satisfies a coupling only approximately, and so do the keys that it saves.

@@ -5,13 +5,14 @@ mod stacked;
 pub mod text;
 pub mod values;
 
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::json::print;
 use crate::quantity::quantity;
 use crate::robot::{RobotArguments, screen};
 use crate::state::{Motion, MotionArguments, environment};
 use crate::task::TaskArguments;
 use crate::text::Page;
+use crate::workload;
 use clap::Args;
 use mozzi::quantities::Query;
 use serde_json::Value;
@@ -44,12 +45,7 @@ const MOST: usize = 1000;
 
 pub fn run(arguments: &TermsArguments) -> Result<String> {
     let model = arguments.robot.load_at(|model| Ok(arguments.motion.start(model)?.0))?;
-    if model.n() > MOST {
-        let n = model.n();
-        return Err(Failure::wrong(format!(
-            "the robot has {n} velocities, expected at most {MOST} for all terms; `mozzi compute` has one quantity"
-        )));
-    }
+    workload::at_most(MOST, &model, "for all terms; `mozzi compute` has one quantity")?;
     let Motion { state, applied } = arguments.motion.read(&model)?;
     let environment = environment(&model, &applied);
     let mut terms = Terms::at(&model, state, &environment)?;

@@ -2,7 +2,7 @@
 //!
 //! A point or a weld is between two sites. A hinge becomes two points of its axis. A sum of joints is a fixed tendon.
 
-use super::travel;
+use super::{numbers, travel};
 use crate::urdf::write::escaped;
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Gear};
 use mozzi::{Description, SE3};
@@ -80,15 +80,14 @@ pub(super) fn loss(constraint: &Constraint) -> Option<String> {
 /// Mimic joints, the slides of helical joints, whose travel is the pitch times the turn, and constraints.
 pub(super) fn equalities(text: &mut String, d: &Description) -> fmt::Result {
     let mut lines = String::new();
-    let polynomial = |c: &[f64]| c.iter().map(|c| format!("{c:?}")).collect::<Vec<_>>().join(" ");
     for joint in &d.joints {
         let name = escaped(&joint.name);
         if let Some(A) = travel(joint.kind) {
-            let c = polynomial(&[0.0, A.pitch(), 0.0, 0.0, 0.0]);
+            let c = numbers(&[0.0, A.pitch(), 0.0, 0.0, 0.0]);
             writeln!(lines, "    <joint joint1=\"{name}.travel\" joint2=\"{name}\" polycoef=\"{c}\"/>")?;
         }
         if let Some(mimic) = &joint.mimic {
-            let (source, c) = (escaped(&mimic.joint), polynomial(&[mimic.offset, mimic.ratio, 0.0, 0.0, 0.0]));
+            let (source, c) = (escaped(&mimic.joint), numbers(&[mimic.offset, mimic.ratio, 0.0, 0.0, 0.0]));
             writeln!(lines, "    <joint joint1=\"{name}\" joint2=\"{source}\" polycoef=\"{c}\"/>")?;
         }
     }
@@ -98,7 +97,7 @@ pub(super) fn equalities(text: &mut String, d: &Description) -> fmt::Result {
             writeln!(lines, "    <{element} name=\"{name}\" site1=\"{a}\" site2=\"{b}\"/>")?;
         }
         if let ConstraintKind::Joint { source, polynomial: c, .. } = &constraint.kind {
-            let (name, c) = (escaped(&constraint.name), polynomial(c));
+            let (name, c) = (escaped(&constraint.name), numbers(c));
             write!(lines, "    <tendon name=\"{name}\" tendon1=\"{name}\"")?;
             if !source.is_empty() {
                 write!(lines, " tendon2=\"{name}.source\"")?;

@@ -1,13 +1,11 @@
 //! `<keyframe>`: the named states, in MuJoCo's coordinates.
 
-use super::{Plan, travel};
+use super::{Plan, numbers, start, travel};
+use crate::mjcf::keyframe::QPOS0;
 use crate::urdf::write::escaped;
 use mozzi::model::description::{Joint, JointKind, NamedState};
 use mozzi::{Base, Description, SE3};
 use std::fmt::{self, Write};
-
-/// The name by which MuJoCo's initial state is read.
-const QPOS0: &str = "qpos0";
 
 /// The keys of all states but the one that the bodies' poses express.
 pub(super) fn keyframe(text: &mut String, plan: &Plan) -> fmt::Result {
@@ -23,10 +21,9 @@ pub(super) fn keyframe(text: &mut String, plan: &Plan) -> fmt::Result {
         if state.time != 0.0 {
             write!(lines, " time=\"{:?}\"", state.time)?;
         }
-        let list = |list: &[f64]| list.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ");
-        write!(lines, " qpos=\"{}\"", list(&qpos))?;
+        write!(lines, " qpos=\"{}\"", numbers(&qpos))?;
         if qvel.iter().any(|x| *x != 0.0) {
-            write!(lines, " qvel=\"{}\"", list(&qvel))?;
+            write!(lines, " qvel=\"{}\"", numbers(&qvel))?;
         }
         lines.push_str("/>\n");
     }
@@ -35,7 +32,7 @@ pub(super) fn keyframe(text: &mut String, plan: &Plan) -> fmt::Result {
 
 /// The choice of a start that the bodies' poses do not express.
 pub(super) fn loss(d: &Description) -> Option<String> {
-    let start = d.states.iter().find(|state| Some(&state.name) == d.start.as_ref())?;
+    let start = start(d)?;
     (!is_drawn(d, start)).then(|| format!("the choice of the state in which the robot starts, `{}`", start.name))
 }
 

@@ -8,7 +8,7 @@ use crate::text::scan::MOST_DEPTH;
 use crate::urdf::write::{escaped, triple};
 use crate::written::{NotWritten, Written};
 use equality::Site;
-use mozzi::model::description::{Joint, JointKind, Link};
+use mozzi::model::description::{Joint, JointKind, Link, NamedState};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
@@ -123,8 +123,7 @@ fn mujoco(text: &mut String, plan: &Plan) -> fmt::Result {
     match plan.base {
         Some(base) if plan.is_world(&base.name) => inside(text, plan, &base.name, 2)?,
         Some(base) => {
-            let start =
-                d.states.iter().find(|state| Some(&state.name) == d.start.as_ref()).and_then(|state| state.base);
+            let start = start(d).and_then(|state| state.base);
             let T = start.map_or_else(SE3::identity, |base| SE3::from_pose(base.pose));
             open(text, &base.name, T, 2)?;
             if d.base == Base::Floating {
@@ -160,7 +159,6 @@ fn body(text: &mut String, plan: &Plan, link: &Link, depth: usize) -> fmt::Resul
     let G = link.inertia;
     if G != SpatialInertia::zero() {
         let (c, I) = (G.center_of_mass(), G.about_center_of_mass());
-        let numbers = |list: &[f64]| list.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ");
         // MuJoCo refuses moments of 0 only as a full inertia
         let inertia = match [I.xy, I.xz, I.yz] {
             [0.0, 0.0, 0.0] => format!("diaginertia=\"{}\"", numbers(&[I.xx, I.yy, I.zz])),
@@ -210,10 +208,19 @@ fn site(text: &mut String, name: &str, T: SE3, depth: usize) -> fmt::Result {
     writeln!(text, "{indent}<site name=\"{name}\" pos=\"{}\" quat=\"{w:?} {}\"/>", triple(T.p), triple(v))
 }
 
+/// Numbers of an attribute.
+fn numbers(list: &[f64]) -> String {
+    list.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ")
+}
+
+/// The state in which the robot starts.
+fn start(d: &Description) -> Option<&NamedState> {
+    d.states.iter().find(|state| Some(&state.name) == d.start.as_ref())
+}
+
 /// The pose of a free joint in the state in which the robot starts.
 fn start_of(d: &Description, joint: &str) -> SE3 {
-    let state = d.states.iter().find(|state| Some(&state.name) == d.start.as_ref());
-    let found = state.and_then(|state| state.joints.iter().find(|one| one.name == joint));
+    let found = start(d).and_then(|state| state.joints.iter().find(|one| one.name == joint));
     let pose: Option<[f64; 7]> = found.and_then(|one| one.positions.as_slice().try_into().ok());
     pose.map_or_else(SE3::identity, SE3::from_pose)
 }
