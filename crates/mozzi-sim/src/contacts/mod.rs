@@ -108,12 +108,11 @@ impl Surface {
         (self.T.R * Vec3([0.0, 0.0, 1.0])).dot(at - self.T.p)
     }
 
-    /// The distances of points of a frame whose configuration in {s} is T: −(n · x + d) with n, into the plane, and x,
-    /// the touching point, in the frame.
-    pub(crate) fn seen_from(&self, T: SE3) -> impl Fn(&ContactPoint) -> f64 + use<> {
+    /// n, into the plane, and d in a frame whose configuration in {s} is T: a point x of it is at the distance −(n · x +
+    /// d).
+    pub(crate) fn seen_from(&self, T: SE3) -> (Vec3, f64) {
         let n = -(self.T.R * Vec3([0.0, 0.0, 1.0]));
-        let (d, n) = (n.dot(T.p - self.T.p), T.R.inverse_mul(n));
-        move |point| -(n.dot(point.farthest(n)) + d)
+        (T.R.inverse_mul(n), n.dot(T.p - self.T.p))
     }
 
     /// A contact point next to it; T is the configuration of its frame in {s}.

@@ -11,15 +11,14 @@ pub(crate) use rows::{Key, System};
 use crate::Error;
 use crate::contacts::{ContactForce, Contacts, Surface};
 use crate::factored_mass::FactoredMass;
-use crate::one_sided::{Law, Problem, solve};
+use crate::one_sided::Law;
 use crate::{Friction, Options, Policy};
 use alloc::collections::BTreeMap;
-use alloc::vec;
 use alloc::vec::Vec;
 use mozzi::linalg::Vec3;
 use mozzi::model::{Bounds, Model};
 use mozzi::scalar::Scalar;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use near::Cloud;
 use rows::Touching;
 
@@ -29,8 +28,8 @@ const TOLERANCES: [f64; 2] = [1e-12, 1e-6];
 const LEAST: f64 = 1e-4;
 /// A residual above this is reported as unsolved, m/s.
 const UNSOLVED: f64 = 1e-6;
-/// Repeated solutions in which the friction of more contacts is taken at the middle of the step.
-const SHIFTS: usize = 4;
+/// Repeated solutions in which the friction of other contacts is taken at the middle of the step.
+const SHIFTS: usize = 5;
 /// Contacts nearer than this act at least, m: rounding of positions.
 const NEAR: f64 = 1e-8;
 /// An impact rebounds if it is faster than this many times what the contact gains in the step without contact forces: a
@@ -179,7 +178,7 @@ impl<'r> Impulses<'r> {
 
     /// The impulses of the last step, for a step of h seconds.
     pub fn guess(&self, system: &System, h: f64) -> DVector<f64> {
-        let mut p = DVector::zeros(system.laws.iter().map(|law| law.rows()).sum());
+        let mut p = DVector::zeros(system.w.len());
         for &(key, first, law) in &system.rows {
             if let Ok(known) = self.memory.warm.binary_search_by_key(&key, |(key, _)| *key) {
                 (0..law.rows()).for_each(|k| p[first + k] = h * self.memory.warm[known].1[k]);
@@ -189,6 +188,8 @@ impl<'r> Impulses<'r> {
     }
 
     /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
+    /// The friction of contacts that slide throughout is taken at the middle of the step: of those of the last solution,
+    /// or else of more and more contacts.
     pub fn solve(
         &mut self,
         system: &mut System,
@@ -210,31 +211,34 @@ impl<'r> Impulses<'r> {
         }
         let size = b.amax().max(LEAST);
         let tolerances = TOLERANCES.map(|tolerance| tolerance * size);
-        let G = core::mem::replace(&mut system.G, DMatrix::zeros(0, 0));
-        let mut problem = Problem { G, b, laws: core::mem::take(&mut system.laws) };
-        let mut found = solve(&problem, guess, tolerances);
-        self.account.add(&found);
-        let mut shifted = vec![false; system.rows.len()];
-        for _ in 0..SHIFTS {
-            let u = &problem.G * &found.p + &free;
-            let mut changes = false;
-            for (row, &(_, first, law)) in system.rows.iter().enumerate() {
-                if !shifted[row] && slides_throughout(law, first, &found.p, before, &u) {
-                    for r in law.tangential(first) {
-                        problem.b[r] += before[r];
-                    }
-                    (shifted[row], changes) = (true, true);
+        let System { rows, shifted, solver, G, .. } = system;
+        let (mut p, mut shifts) = (guess.clone(), 0);
+        loop {
+            let mut of_middle = b.clone();
+            for (&(_, first, law), _) in rows.iter().zip(&*shifted).filter(|(_, shifted)| **shifted) {
+                law.tangential(first).for_each(|r| of_middle[r] += before[r]);
+            }
+            let found = solver.solve(&of_middle, &p, tolerances);
+            self.account.add(&found);
+            let mut u = free.clone();
+            u.gemv(1.0, G, &found.p, 1.0);
+            let slides = |&(_, first, law): &(Key, usize, Law)| slides_throughout(law, first, &found.p, before, &u);
+            let is_stale = shifts == 0 && rows.iter().zip(&*shifted).any(|(row, shifted)| *shifted && !slides(row));
+            if is_stale {
+                shifted.fill(false);
+            }
+            let mut changes = is_stale;
+            if !is_stale && shifts < SHIFTS {
+                for (row, shifted) in rows.iter().zip(&mut *shifted) {
+                    let begins = !*shifted && slides(row);
+                    (*shifted, changes) = (*shifted || begins, changes || begins);
                 }
             }
             if !changes {
-                break;
+                return Solved { p: found.p, before: before.clone(), free, u, residual: found.residual };
             }
-            found = solve(&problem, &found.p, tolerances);
-            self.account.add(&found);
+            (p, shifts) = (found.p, shifts + 1);
         }
-        let u = &problem.G * &found.p + &free;
-        (system.G, system.laws) = (problem.G, problem.laws);
-        Solved { p: found.p, before: before.clone(), free, u, residual: found.residual }
     }
 
     /// Remembers the impulses of a step of h seconds that counts.

@@ -18,7 +18,8 @@ const CARRIED: f64 = 1.02;
 /// The contact points of a frame, within a sphere.
 pub(super) struct Cloud {
     frame: FrameId,
-    points: Vec<usize>,
+    /// Their numbers, and the sphere around each.
+    points: Vec<(usize, Vec3, f64)>,
     center: Vec3,
     radius: f64,
 }
@@ -45,7 +46,8 @@ impl Cloud {
             let center = Vec3([0, 1, 2].map(middle));
             let sizes = points.iter().map(|&k| &contacts.points[k]);
             let radius = sizes.map(|point| (point.center - center).norm() + point.radius()).fold(0.0, f64::max);
-            Cloud { frame, points, center, radius }
+            let sphere = |k: usize| (k, contacts.points[k].center, contacts.points[k].radius());
+            Cloud { frame, points: points.into_iter().map(sphere).collect(), center, radius }
         };
         frames.into_iter().map(of_frame).collect()
     }
@@ -64,10 +66,15 @@ impl Impulses<'_> {
                 if height(surface, T * cloud.center).min(height(surface_next, T_next * cloud.center)) > self.reach {
                     continue;
                 }
-                let (gap_now, gap_then) = (surface.seen_from(T), surface_next.seen_from(T_next));
-                let candidate = |&point: &usize| {
+                let planes = [surface.seen_from(T), surface_next.seen_from(T_next)];
+                let candidate = |&(point, center, radius): &(usize, Vec3, f64)| {
+                    let [now, then] = planes.map(|(n, d)| -(n.dot(center) + d));
+                    if now.min(then) - radius > self.reach {
+                        return None;
+                    }
                     let of: &ContactPoint = &self.contacts.points[point];
-                    let gap = gap_now(of).min(gap_then(of));
+                    let [now, then] = planes.map(|(n, d)| -(n.dot(of.farthest(n)) + d));
+                    let gap = now.min(then);
                     (gap <= self.reach).then(|| {
                         let key = Key::Contact(point, plane);
                         let carried = self.memory.carrying.iter().any(|&(other, _)| other == key);

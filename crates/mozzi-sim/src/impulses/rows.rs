@@ -4,7 +4,7 @@ use super::Impulses;
 use crate::Error;
 use crate::contacts::{Surface, Touch};
 use crate::factored_mass::Support;
-use crate::one_sided::Law;
+use crate::one_sided::{Law, Solver};
 use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -32,7 +32,9 @@ pub(crate) enum Key {
 pub(crate) struct System {
     /// The blocks: what they belong to, their first row, and their law.
     pub rows: Vec<(Key, usize, Law)>,
-    pub laws: Vec<Law>,
+    /// The blocks whose friction is taken at the middle of the step.
+    pub shifted: Vec<bool>,
+    pub solver: Solver,
     /// m × n
     pub J: DMatrix<f64>,
     /// The velocity of the surroundings along the rows.
@@ -57,7 +59,9 @@ pub(crate) struct Touching {
 impl System {
     /// The velocities of the surroundings as seen from the robot.
     pub fn relative(&self, dtheta: &[f64]) -> DVector<f64> {
-        &self.w - &self.J * DVectorView::from_slice(dtheta, dtheta.len())
+        let mut u = self.w.clone();
+        u.gemv(-1.0, &self.J, &DVectorView::from_slice(dtheta, dtheta.len()), 1.0);
+        u
     }
 }
 
@@ -166,8 +170,9 @@ impl Impulses<'_> {
         self.mass.factor(theta, 1.0, diagonal)?;
         let J = DMatrix::from_row_slice(w.len(), n, &rows);
         let G = self.delassus(&J);
-        let laws = blocks.iter().map(|&(_, _, law)| law).collect();
-        Ok(System { rows: blocks, laws, J, w: DVector::from_vec(w), G, touches })
+        let laws: Vec<Law> = blocks.iter().map(|&(_, _, law)| law).collect();
+        let (shifted, solver) = (vec![false; laws.len()], Solver::new(&G, &laws));
+        Ok(System { rows: blocks, shifted, solver, J, w: DVector::from_vec(w), G, touches })
     }
 
     /// J M⁻¹Jᵀ: the products of the rows of D^{−½}L⁻ᵀJᵀ.

@@ -253,7 +253,9 @@ impl Moreau {
             last.copy_from_slice(&v_m);
             (0..n).for_each(|j| v_m[j] = 0.5 * (v[j] + after[j]));
             let before = core::mem::replace(&mut change, apart(&start, &after));
-            if pass > 0 && change <= SETTLED {
+            // the next change is expected to be smaller by as much as this one is
+            if pass > 0 && (change <= SETTLED || pass > 1 && change * change <= SETTLED * before && change < before) {
+                settles = true;
                 break;
             }
             settles = pass == 0 || change <= UNSETTLED || change < 0.5 * before && pass + 1 < PASSES;

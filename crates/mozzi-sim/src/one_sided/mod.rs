@@ -73,8 +73,9 @@ const FAR: [f64; 25] = {
 };
 /// Sweeps before the last method.
 const SWEEPS: usize = 20;
-/// Sweeps follow where Newton's method leaves more than this many times the residual that is sought.
-const FAR_OFF: f64 = 1e4;
+/// A residual of at most this many times what is sought is good where a step does not make it a tenth: redundant
+/// impulses on the edges of their cones converge no faster. Sweeps follow where Newton's method leaves more.
+const CLOSE: f64 = 1e3;
 /// Iterations of the last method between Newton steps, and the number of such rounds.
 const ADMM_CHUNK: usize = 300;
 const ADMM_ROUNDS: usize = 5;
@@ -82,17 +83,14 @@ const ADMM_ROUNDS: usize = 5;
 impl Problem {
     /// u = G p + b.
     pub fn velocity(&self, p: &DVector<f64>) -> DVector<f64> {
-        &self.G * p + &self.b
+        let mut u = self.b.clone();
+        u.gemv(1.0, &self.G, p, 1.0);
+        u
     }
 
     /// The laws with their first rows.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = (usize, Law)> + '_ {
-        let mut next = 0;
-        self.laws.iter().map(move |&law| {
-            let first = next;
-            next += law.rows();
-            (first, law)
-        })
+        blocks(&self.laws)
     }
 
     /// Makes impulses admissible.
@@ -101,24 +99,25 @@ impl Problem {
             law.project(&mut p.as_mut_slice()[first..first + law.rows()]);
         }
     }
+}
 
-    /// g of each row: the mean diagonal entry of G in the row's block. 1 for a block that nothing moves.
-    pub(crate) fn scales(&self) -> Vec<f64> {
-        let mut scales = Vec::with_capacity(self.b.len());
-        for (first, law) in self.blocks() {
-            let rows = law.rows();
-            let mean = (first..first + rows).map(|r| self.G[(r, r)]).sum::<f64>() / rows as f64;
-            scales.extend(core::iter::repeat_n(if mean > 0.0 { mean } else { 1.0 }, rows));
-        }
-        scales
-    }
+/// The laws with their first rows.
+fn blocks(laws: &[Law]) -> impl Iterator<Item = (usize, Law)> + '_ {
+    let mut next = 0;
+    laws.iter().map(move |&law| {
+        let first = next;
+        next += law.rows();
+        (first, law)
+    })
 }
 
 /// The natural residual of impulses, a velocity: max g ‖p − Π_K(p − (u + s)/g)‖ over the rows, with s = μ‖u_t‖ along
 /// the normal of a contact (De Saxcé and Feng 1998) and g the mean of the block's diagonal of G. It is 0 exactly for a
 /// solution.
 pub fn residual(problem: &Problem, p: &DVector<f64>) -> f64 {
-    Scaled::new(problem, p).residual
+    let mut of = Scaled::new(&problem.G, &problem.laws);
+    of.begin(&problem.b, p);
+    of.residual
 }
 
 /// The natural residual of a scaled problem, in which g is 1. Each row's error is multiplied by its factor.
@@ -146,48 +145,67 @@ fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
 ///
 /// # Panics
 /// When the guess is not m long.
-pub fn solve(problem: &Problem, guess: &DVector<f64>, [sought, enough]: [f64; 2]) -> Solution {
-    let m = problem.b.len();
-    assert!(guess.len() == m, "the guess has {} entries, expected {m}", guess.len());
-    let mut found = Solution { p: guess.clone(), residual: 0.0, newton_steps: 0, sweeps: 0, admm_iterations: 0 };
-    if m == 0 {
-        return found;
+pub fn solve(problem: &Problem, guess: &DVector<f64>, tolerances: [f64; 2]) -> Solution {
+    Solver::new(&problem.G, &problem.laws).solve(&problem.b, guess, tolerances)
+}
+
+/// One G and its laws, for one b after the other.
+pub(crate) struct Solver {
+    is_finite: bool,
+    of: Scaled,
+    /// The last derivative of Newton's method.
+    derivative: Option<newton::Derivative>,
+}
+
+impl Solver {
+    pub fn new(G: &DMatrix<f64>, laws: &[Law]) -> Self {
+        let is_finite = G.iter().all(|x| x.is_finite());
+        Solver { is_finite, of: Scaled::new(G, laws), derivative: None }
     }
-    if !problem.G.as_slice().iter().chain(problem.b.as_slice()).all(|x| x.is_finite()) {
-        found.residual = f64::NAN;
-        return found;
-    }
-    let mut of = Scaled::new(problem, guess);
-    if !of.residual.is_finite() {
-        of = Scaled::new(problem, &DVector::zeros(m));
-    }
-    let start = of.best.clone();
-    let mut newton = |of: &mut Scaled, p: DVector<f64>, weights: &[f64]| {
-        found.newton_steps += newton::newton(of, p, weights, sought);
-    };
-    newton(&mut of, start, &NEAR);
-    if of.residual > sought {
-        let p = of.best.clone();
-        newton(&mut of, p, &FAR);
-    }
-    if of.residual > enough.min(FAR_OFF * sought) {
-        let mut p = of.best.clone();
-        found.sweeps = sweeps::sweep(&of.problem, &mut p, sought, SWEEPS);
-        of.offer(&p);
-        newton(&mut of, p, &NEAR);
-    }
-    if of.residual > enough {
-        let mut method = admm::Admm::new(&of.problem, &of.best);
-        for _ in 0..ADMM_ROUNDS {
-            found.admm_iterations += method.iterate(&of.problem, sought, ADMM_CHUNK);
-            let p = method.impulses().clone();
+
+    /// As [`solve`].
+    pub fn solve(&mut self, b: &DVector<f64>, guess: &DVector<f64>, [sought, enough]: [f64; 2]) -> Solution {
+        let Solver { is_finite, of, derivative } = self;
+        let m = b.len();
+        assert!(guess.len() == m, "the guess has {} entries, expected {m}", guess.len());
+        let mut found = Solution { p: guess.clone(), residual: 0.0, newton_steps: 0, sweeps: 0, admm_iterations: 0 };
+        if m == 0 {
+            return found;
+        }
+        if !(*is_finite && b.iter().all(|x| x.is_finite())) {
+            found.residual = f64::NAN;
+            return found;
+        }
+        of.begin(b, guess);
+        if !of.residual.is_finite() {
+            of.begin(b, &DVector::zeros(m));
+        }
+        let mut newton = |of: &mut Scaled, p: DVector<f64>, weights: &[f64]| {
+            found.newton_steps += newton::newton(of, derivative, p, weights, sought);
+        };
+        newton(of, of.best.clone(), &NEAR);
+        if of.residual > CLOSE * sought {
+            newton(of, of.best.clone(), &FAR);
+        }
+        if of.residual > enough.min(CLOSE * sought) {
+            let mut p = of.best.clone();
+            found.sweeps = sweeps::sweep(&of.problem, &mut p, sought, SWEEPS);
             of.offer(&p);
-            newton(&mut of, p, &FAR);
-            if of.residual <= enough || method.is_done() {
-                break;
+            newton(of, p, &NEAR);
+        }
+        if of.residual > enough {
+            let mut method = admm::Admm::new(&of.problem, &of.best);
+            for _ in 0..ADMM_ROUNDS {
+                found.admm_iterations += method.iterate(&of.problem, sought, ADMM_CHUNK);
+                let p = method.impulses().clone();
+                of.offer(&p);
+                newton(of, p, &FAR);
+                if of.residual <= enough || method.is_done() {
+                    break;
+                }
             }
         }
+        (found.p, found.residual) = (of.impulses(), of.residual);
+        found
     }
-    (found.p, found.residual) = (of.impulses(), of.residual);
-    found
 }

@@ -1,7 +1,7 @@
 //! A problem whose blocks have a G of about 1 on the diagonal: rows in rad/s and in m/s, of light and of heavy links,
 //! are then alike. The factors are powers of two, so that nothing is rounded.
 
-use super::{Law, Problem, residual_with};
+use super::{Law, Problem, blocks, residual_with};
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
@@ -19,21 +19,30 @@ pub(super) struct Scaled {
 }
 
 impl Scaled {
-    pub fn new(problem: &Problem, guess: &DVector<f64>) -> Self {
-        let scales = problem.scales();
+    /// The problem of this G, without a b yet.
+    pub fn new(G: &DMatrix<f64>, laws: &[Law]) -> Self {
+        let scales = scales(G, laws);
         let largest = scales.iter().fold(0.0_f64, |most, g| most.max(*g));
         let root: Vec<f64> = scales.iter().map(|&g| root(if g > NOISE * largest { g } else { largest })).collect();
         let m = root.len();
-        let G = DMatrix::from_fn(m, m, |r, c| problem.G[(r, c)] / root[r] / root[c]);
-        let b = DVector::from_fn(m, |r, _| problem.b[r] / root[r]);
-        let laws = problem.blocks().map(|(first, law)| match law {
+        let mut scaled = G.clone();
+        for (mut column, &c) in scaled.column_iter_mut().zip(&root) {
+            column.iter_mut().zip(&root).for_each(|(x, &r)| *x *= (1.0 / c) * (1.0 / r));
+        }
+        let laws = blocks(laws).map(|(first, law)| match law {
             Law::Dry { most } => Law::Dry { most: most * root[first] },
             law => law,
         });
-        let problem = Problem { G, b, laws: laws.collect() };
-        let best = DVector::from_fn(m, |r, _| guess[r] * root[r]);
-        let residual = residual_with(&problem, &root, &best);
-        Scaled { problem, root, best, residual }
+        let problem = Problem { G: scaled, b: DVector::zeros(m), laws: laws.collect() };
+        Scaled { problem, root, best: DVector::zeros(m), residual: f64::NAN }
+    }
+
+    /// Another b, and impulses to begin with.
+    pub fn begin(&mut self, b: &DVector<f64>, guess: &DVector<f64>) {
+        for (r, &root) in self.root.iter().enumerate() {
+            (self.problem.b[r], self.best[r]) = (b[r] / root, guess[r] * root);
+        }
+        self.residual = residual_with(&self.problem, &self.root, &self.best);
     }
 
     /// Keeps the admissible impulses next to p if they are better: true if so.
@@ -52,6 +61,17 @@ impl Scaled {
     pub fn impulses(&self) -> DVector<f64> {
         DVector::from_fn(self.best.len(), |r, _| self.best[r] / self.root[r])
     }
+}
+
+/// g of each row: the mean diagonal entry of G in the row's block. 1 for a block that nothing moves.
+pub(super) fn scales(G: &DMatrix<f64>, laws: &[Law]) -> Vec<f64> {
+    let mut scales = Vec::with_capacity(G.nrows());
+    for (first, law) in blocks(laws) {
+        let rows = law.rows();
+        let mean = (first..first + rows).map(|r| G[(r, r)]).sum::<f64>() / rows as f64;
+        scales.extend(core::iter::repeat_n(if mean > 0.0 { mean } else { 1.0 }, rows));
+    }
+    scales
 }
 
 /// 2ᵏ with g/4ᵏ from ½ to 2.

@@ -58,7 +58,7 @@ fn mixed(random: &mut Random, is_redundant: bool) -> Problem {
 
 /// How far (p, u) is from each law, in the law's own words: sizes of p in velocities by the block's g.
 fn violation(problem: &Problem, p: &DVector<f64>) -> f64 {
-    let (u, scales) = (problem.velocity(p), problem.scales());
+    let (u, scales) = (problem.velocity(p), scaled::scales(&problem.G, &problem.laws));
     let mut worst = 0.0_f64;
     let mut at_most = |excess: f64| worst = worst.max(excess);
     for (i, law) in problem.blocks() {
