@@ -188,8 +188,8 @@ impl<'r> Impulses<'r> {
     }
 
     /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
-    /// The friction of contacts that slide throughout is taken at the middle of the step: of those of the last solution,
-    /// or else of more and more contacts.
+    /// Contacts that slide throughout have their friction at the middle of the step: those of the last solution, or else
+    /// more and more.
     pub fn solve(
         &mut self,
         system: &mut System,

@@ -94,7 +94,7 @@ enum Side {
 struct Function {
     u: DVector<f64>,
     F: DVector<f64>,
-    /// Of each block.
+    /// One for each block.
     sides: Vec<Side>,
 }
 
