@@ -108,7 +108,7 @@ impl Surface {
         (self.T.R * Vec3([0.0, 0.0, 1.0])).dot(at - self.T.p)
     }
 
-    /// n, into the plane, and d in a frame whose configuration in {s} is T: its point x is at the distance −(n · x + d).
+    /// n, into the plane, and d in a frame at T in {s}: its point x is at the distance −(n · x + d).
     pub(crate) fn seen_from(&self, T: SE3) -> (Vec3, f64) {
         let n = -(self.T.R * Vec3([0.0, 0.0, 1.0]));
         (T.R.inverse_mul(n), n.dot(T.p - self.T.p))

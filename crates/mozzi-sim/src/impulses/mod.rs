@@ -188,8 +188,8 @@ impl<'r> Impulses<'r> {
     }
 
     /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
-    /// Contacts that slide throughout have their friction at the middle of the step: those of the last solution, or else
-    /// more and more.
+    /// Contacts that slide throughout have their friction at the middle of the step: those of the last solution, or
+    /// more and more of them.
     pub fn solve(
         &mut self,
         system: &mut System,
