@@ -62,15 +62,21 @@ pub struct Errors {
     pub written: Vec<f64>,
 }
 
+/// A joint's force below this part of the largest is not judged by itself: a wrist that turns nothing has none.
+const SMALL_FORCE: f64 = 1e-3;
+
 impl Errors {
     /// Σ_j error_j / weight_j: one number for all joints.
     pub fn weighted_sum(errors: &[f64], weights: &[f64]) -> f64 {
         errors.iter().zip(weights).filter(|(_, w)| **w > 0.0).map(|(e, w)| e / w).sum()
     }
 
-    /// The root mean square over joints of the errors relative to the forces: NRMS.
+    /// The root mean square over joints of the errors relative to the forces: NRMS. A force below a thousandth of the
+    /// largest counts as that.
     pub fn normalized(&self, errors: &[f64]) -> f64 {
-        let used: Vec<f64> = errors.iter().zip(&self.force).filter(|(_, f)| **f > 0.0).map(|(e, f)| e / f).collect();
+        let least = SMALL_FORCE * self.force.iter().copied().fold(0.0, f64::max);
+        let joints = errors.iter().zip(&self.force).filter(|(_, f)| **f > 0.0);
+        let used: Vec<f64> = joints.map(|(e, f)| e / f.max(least)).collect();
         (used.iter().map(|e| e * e).sum::<f64>() / used.len().max(1) as f64).sqrt()
     }
 }

@@ -9,6 +9,10 @@ use nalgebra::{DMatrix, DVector};
 /// determined by the motion.
 const DETERMINED: f64 = 1e-6;
 
+/// The least error of a force, as a part of the largest force: sensors do not resolve more, and a joint without any
+/// force would outweigh all others.
+const RESOLVED: f64 = 1e-6;
+
 /// Rounds of reweighting.
 const ROUNDS: usize = 20;
 
@@ -47,7 +51,7 @@ impl LeastSquares {
             let reason = if most > 0.0 { "the forces are too large to be squared" } else { "all forces are 0" };
             return Err(Error::NotExciting { reason: reason.into() });
         }
-        let least = 1e-12 * most;
+        let least = RESOLVED * most;
         // a force that is 0, such as a floating base's, begins with the weight of the largest
         let start = |rms: f64| if rms > 1e-9 * most { rms } else { most };
         let mut sigma: Vec<f64> = evidence.rms().into_iter().map(start).collect();

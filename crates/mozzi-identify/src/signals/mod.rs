@@ -1,6 +1,7 @@
 //! From a log to evenly spaced positions, velocities, accelerations and forces, all filtered alike.
 
 pub mod butterworth;
+mod cutoff;
 mod quaternions;
 pub mod smoothing_spline;
 pub mod spectrum;
@@ -13,12 +14,12 @@ use butterworth::LowPass;
 use mozzi::{FrameId, Freedom, Model, SpatialInertia};
 use quaternions::{continuous, normalize};
 use smoothing_spline::SmoothingSpline;
-use spectrum::Spectrum;
 
 /// Where the low-pass filter's gain is ½.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Cutoff {
-    /// Five times the frequency below which 99.9 % of the velocities' power lies.
+    /// Five times the frequency below which 99.9 % of the velocities' power lies, or twice that of the forces that the
+    /// robot's file predicts for this motion, whichever is higher.
     #[default]
     Automatic,
     /// This frequency, Hz.
@@ -151,14 +152,8 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
         Cutoff::None => None,
         Cutoff::Hz(f) => Some(f),
         Cutoff::Automatic => {
-            let f = automatic(model, log, &rows);
-            findings.push(Finding::note(
-                "cutoff",
-                format!(
-                    "{}: the cut-off is {f:.3} Hz, five times the band of 99.9 % of the velocities' power",
-                    log.name
-                ),
-            ));
+            let (f, why) = cutoff::automatic(model, log, &rows, filter);
+            findings.push(Finding::note("cutoff", format!("{}: the cut-off is {f:.3} Hz, {why}", log.name)));
             Some(f)
         }
     };
@@ -187,33 +182,6 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     let N = samples.count() as f64;
     samples.removed.iter_mut().for_each(|sum| *sum /= N);
     Ok((samples, findings))
-}
-
-/// Five times the band of the velocities, at most 0.8 of half the sampling rate.
-fn automatic(model: &Model, log: &Log, rows: &Rows) -> f64 {
-    let (n, rate) = (model.n(), 1.0 / rows.step);
-    let Some(run) = rows.runs.iter().max_by_key(|run| run.len()) else { return 0.4 * rate };
-    let t: Vec<f64> = run.iter().map(|&row| log.t[row]).collect();
-    let mut power: Option<Spectrum> = None;
-    let mut add = |x: &[f64]| {
-        let of_one = Spectrum::new(&resampled(&t, x, rows.step), rate);
-        match &mut power {
-            Some(all) => all.power.iter_mut().zip(&of_one.power).for_each(|(sum, x)| *sum += x),
-            None => power = Some(of_one),
-        }
-    };
-    match &log.dtheta {
-        Some(table) => (0..n).for_each(|j| add(&run.iter().map(|&row| table[row * n + j]).collect::<Vec<_>>())),
-        None => {
-            let nq = model.nq();
-            for q in 0..nq {
-                let x: Vec<f64> = run.iter().map(|&row| log.theta[row * nq + q]).collect();
-                add(&x);
-            }
-        }
-    }
-    let band = power.map_or(0.1 * rate, |power| power.band(0.999).max(power.step));
-    (5.0 * band).min(0.4 * rate)
 }
 
 /// Linear interpolation at even times.
