@@ -71,7 +71,10 @@ pub fn question(flag: &str, text: &str, found: &[f64], are_angles: &[bool]) {
         return;
     }
     if let Some((x, _)) = found.iter().zip(are_angles).find(|pair| is_large((pair.0, pair.1))) {
-        let turns = x / std::f64::consts::TAU;
+        let (rates, turns) = (flag == "--dtheta" || flag == "--ddtheta", x / std::f64::consts::TAU);
+        if x.abs() > 1e6 || rates {
+            return note(&format!("{flag} is in radians, and {x:e} is large; degrees: --deg"));
+        }
         note(&format!("{flag} is in radians, and {x} rad are {turns:.1} turns; degrees: --deg, or {x}deg"));
     }
 }

@@ -19,7 +19,7 @@ pub struct EditArguments {
     #[arg(long, value_name = "LINK=m,cx,cy,cz,Ixx,Ixy,Ixz,Iyy,Iyz,Izz")]
     inertia: Vec<String>,
     /// Lock a joint at a position, rad or m, and its mimic joints with it; θ then has no entry for them
-    #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
+    #[arg(long, value_name = "JOINT=POSITION")]
     lock: Vec<String>,
 }
 

@@ -22,7 +22,7 @@ const NEEDS: [Need; 11] = [
     need("simulate", &["contact", "contact-friction", "restitution", "contact-forces"], &["ground", "contacts"]),
     need("simulate", &["contact-forces"], &["out"]),
     need("simulate", &["tolerance"], &["method dopri"]),
-    need("simulate", &["extrapolate"], &["torque", "follow", "tip-wrench"]),
+    need("simulate", &["extrapolate"], &["torque", "tip-wrench"]),
     need("simulate", &["meshes", "mesh-root", "page-rows", "allow-host"], &["report"]),
 ];
 

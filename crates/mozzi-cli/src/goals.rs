@@ -14,13 +14,13 @@ const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "x", "y", "z"];
 #[derive(Args, Debug, Default)]
 pub struct GoalArguments {
     /// Desired position of the frame's origin in {s}, m
-    #[arg(long, aliases = ["xyz", "pos"], value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, aliases = ["xyz", "pos"], value_name = "X,Y,Z")]
     pub position: Option<String>,
     /// Desired orientation: roll, pitch, yaw about the axes of {s}, as in URDF, rad
-    #[arg(long, value_name = "R,P,Y", allow_hyphen_values = true)]
+    #[arg(long, value_name = "R,P,Y")]
     pub rpy: Option<String>,
     /// Desired orientation as a unit quaternion
-    #[arg(long, alias = "quat", value_name = "W,X,Y,Z", allow_hyphen_values = true, conflicts_with = "rpy")]
+    #[arg(long, alias = "quat", value_name = "W,X,Y,Z", conflicts_with = "rpy")]
     pub quaternion: Option<String>,
 }
 

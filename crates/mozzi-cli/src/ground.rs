@@ -47,6 +47,7 @@ impl GroundArguments {
         let (mu, restitution) = self.coefficients()?;
         let coefficients = [mu.unwrap_or(FRICTION), restitution];
         if !self.ground && self.contacts.is_none() {
+            self.name_unused_planes(robot)?;
             return Ok(Contacts::default());
         }
         let mut found = Contacts::default();
@@ -76,6 +77,16 @@ impl GroundArguments {
         };
         failure::note(&format!("{}: {points}, {planes}{cost}", self.flag()));
         Ok(found)
+    }
+
+    /// A note if the file has planes that nothing touches without --ground.
+    fn name_unused_planes(&self, robot: &RobotArguments) -> Result<()> {
+        let is_mjcf = Path::new(&robot.model).is_file() && robot.model.ends_with(".xml");
+        let planes = if is_mjcf { geometry_with(&robot.model, &robot.settings().xacro)?.planes } else { Vec::new() };
+        if let Some((name, _)) = planes.first() {
+            failure::note(&format!("the file's plane `{name}` is not used; --ground puts the robot on it"));
+        }
+        Ok(())
     }
 
     /// True if the output has columns of contact forces.

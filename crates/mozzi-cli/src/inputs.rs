@@ -44,8 +44,7 @@ fn flag(Input { name, symbol, unit, about, dim }: Input) -> Arg {
     let unit = if unit == "any" { "of any unit" } else { unit };
     let help = format!("{symbol}, {about}, {unit}{of_base} [default: {default}]");
     let entries = format!("{symbol}1,{symbol}2,…");
-    let argument =
-        Arg::new(name).long(name).value_name(entries).help(help).allow_hyphen_values(true).conflicts_with("input");
+    let argument = Arg::new(name).long(name).value_name(entries).help(help).conflicts_with("input");
     match name {
         "theta" => argument.visible_alias("q").aliases(["qpos", "positions"]),
         "dtheta" => argument.visible_alias("qd"),

@@ -59,8 +59,8 @@ use std::process::ExitCode;
 
 /// Dynamics of robots, in the notation of Lynch & Park, Modern Robotics, chapter 8.
 ///
-/// Without a subcommand: a tour with the UR5 arm. MODEL is a file (URDF, xacro, MuJoCo's MJCF, or JSON
-/// of `mozzi convert`), - for standard input, or the name of an embedded robot.
+/// Without a subcommand: a tour with the UR5 arm. MODEL is a file (URDF, xacro, MuJoCo's MJCF, SDFormat,
+/// or JSON of `mozzi convert`), - for standard input, or the name of an embedded robot.
 #[derive(Parser, Debug)]
 #[command(name = "mozzi", version, long_version = version::long(), after_help = help(), after_long_help = help())]
 #[command(term_width = text::page_width(), args_conflicts_with_subcommands = true)]
@@ -120,10 +120,10 @@ enum Command {
     /// Play with a robot in a browser: drop its file, drag it, simulate it in real time, read every quantity
     #[command(mut_arg("model", commands::play::model))]
     Play(commands::play::PlayArguments),
-    /// Draw the robot at one configuration as SVG, PNG or PDF, for papers
+    /// Draw the robot at one configuration for papers: SVG; PNG and PDF if built with these features
     #[command(alias = "draw")]
     Picture(commands::picture::PictureArguments),
-    /// Draw a figure as SVG, PNG or PDF: trajectories, energy, phase portraits, convergence, ellipsoids
+    /// Draw a figure, as SVG, PNG or PDF as `picture`: trajectories, energy, phase portraits, convergence, ellipsoids
     #[command(after_help = TABLES)]
     Plot(commands::plot::PlotArguments),
     /// Check a robot's file: all errors and warnings, each with its place

@@ -47,12 +47,7 @@ pub struct MotorArguments {
     /// Motor torques: zero, gravity-compensation, actuators (those of an MJCF file with the controls of --state, and
     /// its gravity compensation), numbers τ1,τ2,… that stay, or a table with columns t, tau_1, … (interpolated
     /// linearly); added to a controller's [default: actuators if the file has some that act, else zero]
-    #[arg(
-        long,
-        alias = "tau",
-        value_name = "FILE|τ1,τ2,…|zero|gravity-compensation|actuators",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, alias = "tau", value_name = "FILE|τ1,τ2,…|zero|gravity-compensation|actuators")]
     pub torque: Option<String>,
     /// Reference for the controller: a table with columns t, theta_1, … and optionally dtheta_, ddtheta_; with a
     /// floating base only the joints are followed, and the base's columns may be missing
@@ -64,16 +59,17 @@ pub struct MotorArguments {
     pub controller: Option<String>,
     /// Time constant of a controller's gains that no file gives, s: errors fall as in ë + 2ω ė + ω² e = 0 with ω = 1/T
     /// [default: 0.1]
-    #[arg(long, value_name = "T", requires = "controller", allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", requires = "controller")]
     response: Option<String>,
     /// How to treat the motors' effort limits
     #[arg(long, value_name = "WHAT", default_value = "report")]
     pub effort_limits: Limit,
     /// Wrench that the tip applies to the environment, in its frame, moment first: a table with columns t, m_x, …
     /// f_z, or six numbers
-    #[arg(long, value_name = "FILE|mx,my,mz,fx,fy,fz", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FILE|mx,my,mz,fx,fy,fz")]
     pub tip_wrench: Option<String>,
-    /// How to extrapolate a table outside its time range
+    /// How to extrapolate a table of --torque or --tip-wrench outside its time range; at the end of --follow the robot
+    /// is held
     #[arg(long, value_name = "WHAT", default_value = "error")]
     extrapolate: Beyond,
 }

@@ -32,6 +32,11 @@ pub fn angles(place: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f64>> 
     entries(text).enumerate().map(entry).collect()
 }
 
+/// The number of entries of a list.
+pub fn count(text: &str) -> usize {
+    entries(text).count()
+}
+
 /// One number for all, or one for each, of which those that `are_angles` may be in degrees.
 pub fn one_or_each(flag: &str, text: &str, are_angles: &[bool]) -> Result<Vec<f64>> {
     let (count, n) = (entries(text).count(), are_angles.len());

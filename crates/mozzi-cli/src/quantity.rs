@@ -52,7 +52,11 @@ impl TypedValueParser for Names {
                 return command.clone().error(ErrorKind::InvalidValue, said);
             }
             let tip = elsewhere(&name).map_or_else(String::new, |tip| format!("\n\n  tip: {tip}"));
-            let told = error.to_string().replace('_', "-");
+            // the nearest names as they are typed here, the given one as it is
+            let told = error.to_string();
+            let (before, near) = told.split_once("the nearest").unwrap_or((&told, ""));
+            let near = if near.is_empty() { String::new() } else { format!("the nearest{}", hyphenated(near)) };
+            let told = format!("{before}{near}");
             let list = "`mozzi compute --list` shows all; M, C, c, g, h, J_b, J_s, rnea, crba, aba, fk are known, too";
             command.clone().error(ErrorKind::InvalidValue, format!("{told}{tip}\n\n  tip: {list}"))
         })

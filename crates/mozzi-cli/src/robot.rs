@@ -153,7 +153,7 @@ pub struct FileArguments {
     pub end_effector: Option<String>,
     /// Gravity in {s} (the frame of a fixed base), m/s²; one number points down, and earth, moon, mars and none are
     /// known [default: the robot's own, else 0,0,-9.81]
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z")]
     pub gravity: Option<String>,
     /// Print one JSON object with all digits instead of text
     #[arg(long)]
@@ -210,7 +210,14 @@ fn gravity(text: &str) -> Result<[f64; 3]> {
     let down = |size: f64| [0.0, 0.0, -size];
     match BODIES.iter().find(|(name, _)| *name == text.trim()) {
         Some((_, size)) => Ok(down(*size)),
-        None if !text.contains(',') => Ok(down(number("--gravity", text)?)),
+        None if !text.contains(',') => match number("--gravity", text)? {
+            size if size < 0.0 => Err(Failure::wrong(format!(
+                "--gravity is {text}: one number is the size of gravity, which points down; expected {}, or the vector \
+                 0,0,{text}",
+                -size
+            ))),
+            size => Ok(down(size)),
+        },
         None => array("--gravity", text, ["x", "y", "z"]),
     }
 }

@@ -10,12 +10,12 @@ use mozzi::{Environment, FrameId, Model, Wrench};
 
 #[derive(Args, Debug, Default)]
 pub struct StartArguments {
-    /// Positions θ, rad or m, a floating base's pose first; or the name of a state [default: the robot's start,
-    /// else joints at 0 and a floating base at {s}]
-    #[arg(long, visible_alias = "q", aliases = ["qpos", "positions"], value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    /// Positions θ, rad or m, a floating base's pose first or left out; JOINT=POSITION,… for some; or the name of a
+    /// state [default: the robot's start, else joints at 0 and a floating base at {s}]
+    #[arg(long, visible_alias = "q", aliases = ["qpos", "positions"], value_name = "θ1,θ2,…")]
     pub theta: Option<String>,
     /// Velocities θ̇, rad/s or m/s; a floating base's twist first, in its own coordinates [default: all 0]
-    #[arg(long, visible_alias = "qd", value_name = "θ̇1,θ̇2,…", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "qd", value_name = "θ̇1,θ̇2,…")]
     pub dtheta: Option<String>,
     /// Take θ and θ̇ from a named state of the robot's file, such as a keyframe; `mozzi info` lists them
     #[arg(long, value_name = "NAME", conflicts_with_all = ["theta", "dtheta"])]
@@ -25,7 +25,7 @@ pub struct StartArguments {
 #[derive(Args, Debug, Default)]
 pub struct TipArguments {
     /// Wrench that the end effector applies to the environment, in its own frame, moment first: N m, N [default: 0]
-    #[arg(long, value_name = "mx,my,mz,fx,fy,fz", allow_hyphen_values = true)]
+    #[arg(long, value_name = "mx,my,mz,fx,fy,fz")]
     pub tip_wrench: Option<String>,
 }
 
@@ -45,10 +45,10 @@ pub struct MotionArguments {
     #[command(flatten)]
     start: StartArguments,
     /// Accelerations θ̈, rad/s² or m/s² [default: all 0]
-    #[arg(long, visible_alias = "qdd", value_name = "θ̈1,θ̈2,…", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "qdd", value_name = "θ̈1,θ̈2,…")]
     ddtheta: Option<String>,
     /// Joint forces τ, N m or N, instead of θ̈, which is then computed
-    #[arg(long, value_name = "τ1,τ2,…", allow_hyphen_values = true, conflicts_with = "ddtheta")]
+    #[arg(long, value_name = "τ1,τ2,…", conflicts_with = "ddtheta")]
     tau: Option<String>,
     #[command(flatten)]
     tip: TipArguments,
@@ -88,6 +88,12 @@ impl StartArguments {
     pub fn name<'a>(&'a self, model: &Model) -> Option<&'a str> {
         let is_state = |text: &&str| model.state_names().any(|name| name == *text);
         self.state.as_deref().or(self.theta.as_deref().filter(is_state))
+    }
+
+    /// True if the pose of a floating base is given.
+    pub fn gives_base(&self, model: &Model) -> bool {
+        let is_of_joints = |text: &String| gives_joints_only(text, model) || text.contains('=');
+        self.state.is_some() || self.theta.as_ref().is_some_and(|text| !is_of_joints(text))
     }
 
     /// True if a state is given.
@@ -178,13 +184,44 @@ pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f6
         |text: &str| model.state_names().len() > 0 && numbers::angle(flag, text).is_err() && !text.contains(',');
     match text {
         None => Ok(model.start().theta),
+        Some(text) if text.contains('=') => named_positions(flag, text, model),
         Some(name) if is_name(name) => Ok(model.state(name)?.theta),
         Some(text) => {
             let are_angles = angles::of_positions(model);
+            if gives_joints_only(text, model) {
+                let mut theta = model.start().theta;
+                theta[7..].copy_from_slice(&numbers::angles(flag, text, &are_angles[7..])?);
+                angles::question(flag, text, &theta[7..], &are_angles[7..]);
+                return Ok(theta);
+            }
             let layout = "base quaternion (w, x, y, z), base origin";
             entries(flag, text, model, model.position_names().collect(), layout, &are_angles)
         }
     }
+}
+
+/// True for the joints of a floating base alone; the base then is where the robot starts.
+fn gives_joints_only(text: &str, model: &Model) -> bool {
+    model.is_floating() && model.nq() > 7 && numbers::count(text) == model.nq() - 7
+}
+
+/// `elbow=90deg,wrist=0.1`: these joints, the others at the robot's start.
+fn named_positions(flag: &str, text: &str, model: &Model) -> Result<Vec<f64>> {
+    let (mut theta, names) = (model.start().theta, model.position_names().collect::<Vec<_>>());
+    let are_angles = angles::of_positions(model);
+    for entry in text.split(',').filter(|entry| !entry.trim().is_empty()) {
+        let Some((name, value)) = entry.split_once('=') else {
+            return Err(Failure::wrong(format!("{flag}: `{entry}` has no name, expected JOINT=POSITION,… or numbers")));
+        };
+        let Some(k) = names.iter().position(|known| *known == name.trim()) else {
+            let near = mozzi_urdf::did_you_mean(name.trim(), names.iter().copied());
+            let near = near.unwrap_or_else(|| format!("expected {}", names.join(", ")));
+            return Err(Failure::wrong(format!("{flag}: there is no joint `{}`; {near}", name.trim())));
+        };
+        theta[k] = numbers::angles(flag, value, &are_angles[k..=k])?.first().copied().unwrap_or_default();
+        angles::question(flag, value, &theta[k..=k], &are_angles[k..=k]);
+    }
+    Ok(theta)
 }
 
 /// n numbers; zeros if the flag is not given.
@@ -217,7 +254,11 @@ fn entries(
         return Ok(found);
     }
     if !model.is_floating() {
-        return Err(numbers::wrong_number(flag, found.len(), &names)); // by name: a ball has several entries
+        let failure = numbers::wrong_number(flag, found.len(), &names); // by name: a ball has several entries
+        return Err(match (failure, found.len().checked_sub(names.len())) {
+            (Failure::Wrong(said), Some(6 | 7)) => Failure::Wrong(format!("{said}; --floating frees the base")),
+            (failure, _) => failure,
+        });
     }
     let joints = match model.joint_names().len() {
         0 => String::new(),

@@ -8,7 +8,7 @@ use mozzi_urdf::did_you_mean;
 use std::ffi::OsString;
 
 /// Flags of other programs, and what is meant.
-const MEANT: [(&str, &str); 22] = [
+const MEANT: [(&str, &str); 33] = [
     ("friction", "--contact-friction is that of the ground; joints have the friction of their file"),
     ("robot", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
     ("model", "the robot is a word without a flag: mozzi COMMAND ROBOT"),
@@ -30,6 +30,17 @@ const MEANT: [(&str, &str); 22] = [
     ("pose", "--position X,Y,Z and --rpy R,P,Y or --quaternion W,X,Y,Z are a pose"),
     ("no-browser", "--out FILE.html writes the page"),
     ("no-open", "--out FILE.html writes the page"),
+    ("acceleration", "--max-acceleration is the limit of acceleration"),
+    ("amax", "--max-acceleration is the limit of acceleration"),
+    ("velocity", "--max-velocity is the limit of velocity"),
+    ("vmax", "--max-velocity is the limit of velocity"),
+    ("time", "--duration is the length of the motion, s"),
+    ("line", "--path line is a straight line of the end effector"),
+    ("screw", "--path screw is a screw motion of the end effector"),
+    ("kp", "--response T is the time constant of a controller's gains; a JSON file of --controller holds gains"),
+    ("kd", "--response T is the time constant of a controller's gains; a JSON file of --controller holds gains"),
+    ("keyframe", "--state NAME is a state of the file, such as a keyframe"),
+    ("language", "--lang is the language of the code"),
     ("radians", "angles are in radians unless --deg is given"),
 ];
 

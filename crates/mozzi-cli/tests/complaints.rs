@@ -195,7 +195,7 @@ fn wrong_numbers() {
 
 #[test]
 fn wrong_frames_and_tasks() {
-    wrong(&["terms", "panda", "--tip-wrench", "0,0,0,0,0,1"], &["must be named", "panda_hand_tcp"]);
+    wrong(&["terms", "anymal", "--tip-wrench", "0,0,0,0,0,1"], &["must be named", "LF_FOOT"]);
     wrong(&["terms", "ur5", "--end-effector", "hand"], &["no frame `hand`", "`tool0`"]);
     wrong(&["screws", "panda", "--python"], &["serial chains"]);
     wrong(&["screws", "panda", "--python", "--end-effector", "panda_hand_tcp"], &["serial chains"]);

@@ -223,8 +223,18 @@ fn frames_in_one_place_are_no_ambiguity() {
     let other = "<link name='camera'/><joint name='to_camera' type='fixed'><origin xyz='0.1 0 0'/><parent link='arm'/>\
                  <child link='camera'/></joint>";
     let branched = two_ended_arm(&folder, "branched.urdf", "0 0 0", other);
-    let (_, said) = complaint(&["compute", &branched, "fk"]);
-    assert!(said.contains("the end effector must be named"), "{said}");
+    assert_eq!(json(&["compute", &branched, "fk"])["frame"], "tool0");
+    let page = text(&["info", "panda"]);
+    let expected = "end effector: panda_hand_tcp (by its name; other ends: `panda_leftfinger`, `panda_rightfinger`)";
+    assert!(page.contains(expected), "{page}");
+    // two tools, and ends without a tool's name
+    for name in ["left_tcp", "camera"] {
+        let other = other.replace("camera", name);
+        let text = std::fs::read_to_string(two_ended_arm(&folder, "ends.urdf", "0 0 0", &other)).expect("a file");
+        let text = if name == "camera" { text.replace("tool0", "a").replace("ee_link", "b") } else { text };
+        let (_, said) = complaint(&["compute", &file(&folder, "ends.urdf", &text), "fk"]);
+        assert!(said.contains("the end effector must be named"), "{said}");
+    }
     // of equal frames without the name of ROS, the first
     let text = std::fs::read_to_string(two_ended_arm(&folder, "equal.urdf", "0 0 0", "")).expect("a file");
     let equal = file(&folder, "equal.urdf", &text.replace("tool0", "flange"));

@@ -362,7 +362,7 @@ fn refuse_one_sided(model: &Model, contacts: &Contacts, options: &Options) -> Re
         }
         None => (format!("{} contact points", contacts.points.len()), "`moreau` or `auto` for contacts"),
     };
-    let found = || format!("{}, which has none of the robot's {what}", options.method.name());
+    let found = || format!("{}, which cannot compute the robot's {what}", options.method.name());
     if joint.is_none() && contacts.is_empty() { Ok(()) } else { check(false, "the method", found(), remedy) }
 }
 

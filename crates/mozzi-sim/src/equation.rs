@@ -152,6 +152,9 @@ impl<'m, I: Input> Equation<'m, I> {
             self.check_torque(t)?;
         }
         if !is_clear {
+            // a mass matrix of such a state is singular by rounding: the motion diverged before
+            self.bounded_by(ABSURD, "theta", t, theta)?;
+            self.bounded_by(ABSURD, "dtheta", t, dtheta)?;
             self.model.compute(self.query(), &state, &environment)?; // names what is singular, if anything is
         }
         let applied_power = self.applied_power(theta, dtheta);
@@ -305,10 +308,14 @@ impl<'m, I: Input> Equation<'m, I> {
     }
 
     pub(crate) fn bounded(&self, quantity: &'static str, time: f64, values: &[f64]) -> Result<(), Error> {
-        if are_below(values, LARGEST) {
+        self.bounded_by(LARGEST, quantity, time, values)
+    }
+
+    fn bounded_by(&self, most: f64, quantity: &'static str, time: f64, values: &[f64]) -> Result<(), Error> {
+        if are_below(values, most) {
             return Ok(());
         }
-        let j = values.iter().position(|x| !(x.abs() < LARGEST)).unwrap_or_default();
+        let j = values.iter().position(|x| !(x.abs() < most)).unwrap_or_default();
         let (joint, value) = (self.joint(j), values[j]);
         Err(Error::Diverged { quantity, joint, value, step: self.step, time, step_size: self.step_size })
     }
@@ -317,6 +324,9 @@ impl<'m, I: Input> Equation<'m, I> {
         self.model.velocity_names().nth(j).unwrap_or_default().to_string()
     }
 }
+
+/// No robot is there, rad, m, rad/s or m/s: a motion that is has diverged.
+const ABSURD: f64 = 1e6;
 
 /// True if all absolute values are below the bound; false for NaN. Branch-free.
 fn are_below(values: &[f64], bound: f64) -> bool {

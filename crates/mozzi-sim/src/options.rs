@@ -28,7 +28,7 @@ pub struct Options {
     pub friction: Friction,
     /// How to treat position limits; by default they are reported. If they are respected, a joint comes to rest at its
     /// limit, inelastically, and is held as long as it is pressed against its stop; a smooth method ends with
-    /// [`Error::StopActs`] there.
+    /// [`Error::StopActs`] there. The start may then be beyond a limit by 10⁻⁵ rad or m.
     pub joint_limits: Policy,
 }
 

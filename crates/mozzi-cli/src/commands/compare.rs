@@ -36,7 +36,7 @@ pub struct CompareArguments {
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
     /// Time limit for each library; a library that exceeds it is stopped and counts as one without a result
-    #[arg(long, value_name = "SECONDS", default_value = "60", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "60")]
     time_limit: String,
     /// Print one JSON object instead of text
     #[arg(long)]

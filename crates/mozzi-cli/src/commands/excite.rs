@@ -20,13 +20,13 @@ pub struct ExciteArguments {
     #[command(flatten)]
     robot: FileArguments,
     /// Duration, s
-    #[arg(long, value_name = "SECONDS", default_value = "20", allow_hyphen_values = true)]
+    #[arg(long, alias = "time", value_name = "SECONDS", default_value = "20")]
     duration: String,
     /// Write the motion to a CSV file: t, theta_1 … tau_n
     #[arg(long, value_name = "FILE.csv")]
     out: Option<String>,
     /// Time between two rows of OUT, s
-    #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "0.01")]
     step: String,
     /// Harmonics of the Fourier series
     #[arg(long, value_name = "COUNT", default_value = "5")]
@@ -44,31 +44,31 @@ pub struct ExciteArguments {
     #[arg(long, value_name = "LIST")]
     max_torque: Option<String>,
     /// Position limits of a joint, instead of the robot's
-    #[arg(long, value_name = "JOINT=LOW,HIGH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "JOINT=LOW,HIGH")]
     range: Vec<String>,
     /// A box in the base frame that a frame's origin stays in, m
-    #[arg(long, value_name = "FRAME=x,y,z,X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FRAME=x,y,z,X,Y,Z")]
     within: Vec<String>,
     /// Spheres about two frames that stay apart: their radii, m
     #[arg(long, value_name = "FRAME,FRAME=r,R")]
     apart: Vec<String>,
     /// Where the motion begins and ends [default: the middle of the limits, optimized]
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    #[arg(long, value_name = "θ1,θ2,…")]
     start: Option<String>,
     /// Standard deviation of the force's noise, one number or one for each joint [default: 1 % of the torque limit]
     #[arg(long, value_name = "LIST")]
     noise: Option<String>,
     /// Independent samples per second of the later log
-    #[arg(long, value_name = "HZ", default_value = "100", allow_hyphen_values = true)]
+    #[arg(long, value_name = "HZ", default_value = "100")]
     rate: String,
     /// Where forces will be measured
     #[arg(long, value_name = "PLACE", default_value = "motor")]
     torque: Place,
     /// Lock a joint at this position, rad or m
-    #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
+    #[arg(long, value_name = "JOINT=POSITION")]
     lock: Vec<String>,
     /// Joints that one rotor turns together: as in identify
-    #[arg(long, value_name = "JOINT[=RATIO],JOINT[=RATIO]", allow_hyphen_values = true)]
+    #[arg(long, value_name = "JOINT[=RATIO],JOINT[=RATIO]")]
     coupled: Vec<String>,
     /// List all base parameters
     #[arg(long)]

@@ -37,19 +37,19 @@ pub struct IkArguments {
     output: Option<String>,
     /// Initial guess, or the name of a state [default: the robot's start, else joints at 0]; for a table, the guess
     /// of each row
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    #[arg(long, value_name = "θ1,θ2,…")]
     guess: Option<String>,
     /// Redundant robots: prefer the solution nearest to these positions, or to a named state
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    #[arg(long, value_name = "θ1,θ2,…")]
     near: Option<String>,
     /// Method of the steps
     #[arg(long, default_value = "levenberg-marquardt")]
     method: Way,
     /// Tolerance on the angle to the goal, rad
-    #[arg(long, value_name = "RAD", default_value = "1e-8rad", allow_hyphen_values = true)]
+    #[arg(long, value_name = "RAD", default_value = "1e-8rad")]
     angle: String,
     /// Tolerance on the distance to the goal, m
-    #[arg(long, value_name = "M", default_value = "1e-8", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", default_value = "1e-8")]
     distance: String,
     /// Maximum number of iterations per start
     #[arg(long, value_name = "K", default_value_t = Options::default().iterations)]
@@ -189,7 +189,10 @@ impl IkArguments {
         match missed.first() {
             None => Ok(text),
             Some(line) => {
-                failure::note(&format!("{} poses were not reached, the first in line {line} of {file}", missed.len()));
+                failure::note(&format!(
+                    "{} of the poses were not reached, the first in line {line} of {file}",
+                    missed.len()
+                ));
                 Err(Failure::Answered(text))
             }
         }

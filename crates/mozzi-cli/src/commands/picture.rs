@@ -21,10 +21,10 @@ pub struct PictureArguments {
     #[arg(long, value_name = "VIEW", default_value = "iso")]
     view: Named,
     /// Angle of the viewer about z of {s}, from x, rad, instead of the view's
-    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE")]
     azimuth: Option<String>,
     /// Angle of the viewer above the plane xy of {s}, rad, instead of the view's
-    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE")]
     elevation: Option<String>,
     /// Draw on a dark ground
     #[arg(long)]

@@ -59,10 +59,10 @@ struct ConvergenceArguments {
     #[command(flatten)]
     start: StartArguments,
     /// Duration of the motion, s
-    #[arg(long, value_name = "SECONDS", default_value = "1", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "1")]
     time: String,
     /// Longest step, s
-    #[arg(long, value_name = "SECONDS", default_value = "0.02", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", default_value = "0.02")]
     step: String,
     /// How often the step is halved
     #[arg(long, value_name = "K", default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=12))]
@@ -76,7 +76,7 @@ struct EllipsoidArguments {
     #[command(flatten)]
     robot: RobotArguments,
     /// Positions θ, rad or m, or the name of a state; may be repeated [default: the robot's start, else joints at 0]
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true)]
+    #[arg(long, value_name = "θ1,θ2,…")]
     theta: Vec<String>,
     /// Plane of {s} to project on
     #[arg(long, value_name = "PLANE", default_value = "xz")]

@@ -41,7 +41,9 @@ pub fn list(is_json: bool) -> Result<String> {
     }
     let mut page = Page::default();
     page.line("embedded robots:").lines(&table(&rows, "lrrl"));
-    page.line("A file is a robot, too: URDF, xacro, MuJoCo's MJCF, JSON of `mozzi convert`; - is standard input.");
+    page.line(
+        "A file is a robot, too: URDF, xacro, MuJoCo's MJCF, SDFormat, JSON of `mozzi convert`; - is standard input.",
+    );
     page.line("mozzi info ur5    mozzi terms ur5    mozzi simulate panda    mozzi play my_robot.urdf");
     Ok(page.end())
 }

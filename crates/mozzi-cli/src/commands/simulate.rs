@@ -41,13 +41,13 @@ pub struct SimulateArguments {
     #[arg(long, alias = "integrator", default_value = "auto")]
     method: Way,
     /// Step size, s; dopri: the time between two rows
-    #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.001", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.001")]
     step: String,
     /// dopri only: tolerance on the local error
-    #[arg(long, value_name = "EPS", default_value = "1e-9", allow_hyphen_values = true)]
+    #[arg(long, value_name = "EPS", default_value = "1e-9")]
     tolerance: String,
     /// Duration, s [default: that of the --follow table, else 2]
-    #[arg(long, alias = "duration", value_name = "SECONDS", allow_hyphen_values = true)]
+    #[arg(long, alias = "duration", value_name = "SECONDS")]
     time: Option<String>,
     #[command(flatten)]
     motors: MotorArguments,
@@ -58,7 +58,7 @@ pub struct SimulateArguments {
     #[command(flatten)]
     events: EventArguments,
     /// Smooth Coulomb friction: μ tanh(θ̇/v_s) with this v_s, rad/s or m/s
-    #[arg(long, value_name = "V_S", allow_hyphen_values = true)]
+    #[arg(long, value_name = "V_S")]
     slip_speed: Option<String>,
     /// Compute forward dynamics by machine code generated for this robot: equal up to rounding, two to three times as
     /// fast
@@ -196,7 +196,8 @@ impl SimulateArguments {
             within_limits(model, &mut theta);
         }
         if !contacts.is_empty() {
-            settle(self.ground.flag(), model, &contacts, &mut theta, is_own)?;
+            let is_free = !self.start.gives_base(model) && followed.is_none();
+            settle(self.ground.flag(), model, &contacts, &mut theta, is_free)?;
         }
         let (theta, dtheta) = assembled(model, theta, dtheta)?;
         let hold = Hold::new(&theta, model.n());

@@ -271,6 +271,7 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
         };
         let halved = match a.halvings {
             0 => String::new(),
+            1 => "; steps halved once, where it did not settle".to_string(),
             count => format!("; steps halved {count} times, where they did not settle"),
         };
         let unsettled = match a.unsettled {

@@ -29,10 +29,10 @@ pub struct TrajectoryArguments {
     robot: RobotArguments,
     /// Initial positions, or the name of a state [default: the robot's start, else joints at 0 and a floating base
     /// at {s}]
-    #[arg(long, visible_aliases = ["theta", "q"], value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
+    #[arg(long, visible_aliases = ["theta", "q"], value_name = "θ1,θ2,…", conflicts_with = "via")]
     from: Option<String>,
     /// Final positions, or the name of a state
-    #[arg(long, value_name = "θ1,θ2,…", allow_hyphen_values = true, conflicts_with = "via")]
+    #[arg(long, value_name = "θ1,θ2,…", conflicts_with = "via")]
     to: Option<String>,
     /// Via points in a table with columns theta_1 …; with a column t, passed at these times by a spline at rest at
     /// both ends, or at the velocities dtheta_1 … and accelerations ddtheta_1 … of the table
@@ -44,28 +44,28 @@ pub struct TrajectoryArguments {
     #[command(flatten)]
     goal: GoalArguments,
     /// Tolerance on the end effector's path, ‖(ω, v)‖, rad and m
-    #[arg(long, value_name = "EPS", default_value = "1e-6", allow_hyphen_values = true)]
+    #[arg(long, value_name = "EPS", default_value = "1e-6")]
     deviation: String,
     /// Time scaling along the path [default: quintic]
     #[arg(long)]
     profile: Option<Shaped>,
     /// Duration, s [default: as short as the limits allow]
-    #[arg(long, alias = "duration", value_name = "SECONDS", allow_hyphen_values = true)]
+    #[arg(long, alias = "duration", value_name = "SECONDS")]
     time: Option<String>,
     /// trapezoidal only: the fraction of the time spent accelerating, and decelerating
-    #[arg(long, value_name = "FRACTION", default_value = "0.25", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FRACTION", default_value = "0.25")]
     ramp_fraction: String,
     /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's]
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST")]
     max_velocity: Option<String>,
     /// Acceleration limits, rad/s² or m/s² [default: the robot's, which URDF 1.2 has]
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST")]
     max_acceleration: Option<String>,
     /// Torque limits, N m or N [default: the robot's]
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST")]
     max_torque: Option<String>,
     /// Time between two rows, s
-    #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.01", allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.01")]
     step: String,
     /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n
     #[arg(long, value_name = "FILE.csv")]

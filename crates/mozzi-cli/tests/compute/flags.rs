@@ -93,7 +93,7 @@ fn an_unknown_quantity_names_what_is_near() {
         assert!(message.contains(words), "{words} in {message}");
     }
     assert!(message.lines().count() < 12, "{message}");
-    wrong(&["panda", "body-jacobian"], "the end effector must be named");
+    wrong(&["anymal", "body-jacobian"], "the end effector must be named");
     wrong(&["ur5", "task-space-dynamics", "--task", "vw"], "--task: there is no row `vw`");
     wrong(&["ur5", "momentum", "--about", "1,2"], "--about has 2 entries, expected 3: x, y, z");
 }

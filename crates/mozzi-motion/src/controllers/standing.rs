@@ -167,7 +167,8 @@ fn solve(
         SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
             Ok(solver.solution.x.clone())
         }
-        status => Err(wrong(format!("none ({status:?})"))),
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Err(wrong("impossible".to_string())),
+        status => Err(wrong(format!("not found ({status})"))),
     }
 }
 

@@ -28,6 +28,9 @@ pub struct Stopped {
     pub times: usize,
 }
 
+/// A start may be beyond a limit by this much, rad or m: a run that ended at a stop can go on from its last state.
+const NEAR: f64 = 1e-5;
+
 /// The state of the joints' limits along a motion.
 pub(crate) struct Stops {
     policy: Policy,
@@ -56,9 +59,7 @@ impl Stops {
                 format!("that of `{name}`, a ball that may not turn at all"),
                 "an angle above 0, or a fixed joint",
             )?;
-            // a quaternion gives the angle to rounding only
-            let rounding = if is_ball { 1e-12 } else { 0.0 };
-            let fine = policy != Policy::Respect || (low..=high + rounding).contains(&q);
+            let fine = policy != Policy::Respect || (low - NEAR..=high + NEAR).contains(&q);
             check(
                 fine,
                 "the start",

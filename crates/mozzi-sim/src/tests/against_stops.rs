@@ -186,6 +186,15 @@ fn joints_that_start_at_their_stops_stay_there() {
         let run = self::run(&model, &[-0.2; 2], &[1.0, 1.0], method, 0.1);
         assert!(run.stops.is_empty() && (run.motion.last().theta[0] - (-0.1 - 0.04905)).abs() < bound);
     }
+    // a hair beyond the stop, as a run may leave a joint; more is refused
+    let run = run(&model, &[-0.2 - 5e-6; 2], &[0.0, -1.0], Method::Automatic, 0.5);
+    let last = run.motion.last();
+    assert!(
+        last.theta.iter().all(|q| (q + 0.2).abs() <= 5e-6) && last.dtheta.iter().all(|v| v.abs() < 1e-9),
+        "{last:?}"
+    );
+    let options = Options { joint_limits: Policy::Respect, ..Options::new(1.0, 100) };
+    assert!(simulate(&model, &[-0.2 - 2e-5; 2], &[0.0; 2], Zero, &options).is_err());
     // a joint that may not move rests against either stop
     let model = slides([0.1, 0.1]);
     let options = Options { joint_limits: Policy::Respect, ..Options::new(1.0, 100) };

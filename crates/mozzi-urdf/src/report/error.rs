@@ -2,6 +2,7 @@
 
 use crate::embedded;
 use crate::report::diagnostic::Diagnostic;
+use crate::report::spelling::did_you_mean;
 use crate::report::visible::visible;
 use mozzi::model::Severity;
 use std::fmt;
@@ -68,10 +69,10 @@ impl LoadError {
             LoadError::File { path, source } => format!("{} cannot be read: {source}", path.display()),
             LoadError::NoSuchRobot { name } => {
                 let known: Vec<&str> = embedded::names().collect();
-                format!(
-                    "`{name}` is neither a file nor one of the embedded robots {}",
-                    crate::urdf::vocabulary::list(&known)
-                )
+                let list = crate::urdf::vocabulary::list(&known);
+                let near = did_you_mean(name.trim_start_matches("./").trim_end_matches(".urdf"), known.iter().copied());
+                let near = near.map(|near| format!("; {near}")).unwrap_or_default();
+                format!("`{name}` is neither a file nor one of the embedded robots {list}{near}")
             }
             LoadError::Refused { file, is_cut, .. } => match self.errors().count() {
                 1 => format!("{file} is refused: 1 error"),

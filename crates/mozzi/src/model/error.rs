@@ -177,16 +177,22 @@ fn list(problems: &[Problem]) -> String {
     })
 }
 
-/// Numbers with at most six decimals.
+/// At most twelve numbers with at most six decimals.
 fn short(list: &[f64]) -> String {
     let mut text = String::from("[");
-    for (k, x) in list.iter().enumerate() {
-        let decimals = format!("{x:.6}");
+    for (k, x) in list.iter().take(SHOWN).enumerate() {
+        let decimals = if x.abs() < 1e6 { format!("{x:.6}") } else { format!("{x:.3e}.") };
         let number = decimals.trim_end_matches('0').trim_end_matches('.');
         let _ = write!(text, "{}{}", if k == 0 { "" } else { ", " }, if number == "-0" { "0" } else { number });
     }
+    if list.len() > SHOWN {
+        text += ", …";
+    }
     text + "]"
 }
+
+/// Further numbers of a list are left out of a message.
+const SHOWN: usize = 12;
 
 pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {
     first_names(names, 20)

@@ -4,6 +4,7 @@ use super::{Error, Model};
 use crate::lie::SE3;
 use crate::scalar::{Real, Scalar};
 use alloc::string::ToString;
+use alloc::vec::Vec;
 
 /// Handle of a named frame, valid for one model only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -56,11 +57,12 @@ impl<C: Scalar> Model<C> {
         if k < links { &description.links[k].name } else { &description.frames[k - links].name }
     }
 
-    /// The end-effector frame: the one set in the description, or the only leaf of a serial chain. Leaves of one origin
-    /// on one moving link are no ambiguity: `tool0` of a ROS robot before its `ee_link`; of equal frames, the first.
+    /// The end-effector frame: the one set in the description; else the leaf that is named as a tool (`tool0`, `tcp`,
+    /// `ee_link`, `end_effector`, alone or after a prefix; the first of these words, if their origin on a moving link is
+    /// one); else the only leaf of a serial chain, or the first of equal frames.
     ///
     /// # Errors
-    /// [`Error::NoEndEffector`] with the candidates if the robot branches and no end effector is set.
+    /// [`Error::NoEndEffector`] with the candidates if the robot branches and none of these is one frame.
     pub fn end_effector(&self) -> Result<FrameId, Error> {
         self.structure.end_effector.ok_or_else(|| Error::NoEndEffector {
             leaves: self.structure.leaves.iter().map(|&leaf| self.frame_name(leaf).to_string()).collect(),
@@ -76,25 +78,31 @@ impl<C: Scalar> Model<C> {
 /// Leaves may be this far apart to have one origin, m.
 const APART: f64 = 1e-9;
 
-/// The end effector of a robot with these leaves, if they are one, or are in one place.
+/// Names by which robots' files mark the tool's frame, alone or after a prefix: `tool0`, `panda_hand_tcp`.
+const TOOLS: [&str; 4] = ["tool0", "tcp", "ee_link", "end_effector"];
+
+/// The rank of a name in `TOOLS`.
+fn tool_rank(name: &str) -> Option<usize> {
+    let is_word_after = |prefix: &str| !prefix.ends_with(char::is_alphanumeric);
+    TOOLS.iter().position(|tool| name.strip_suffix(*tool).is_some_and(is_word_after))
+}
+
+/// The end effector of a robot with these leaves: the one that is named as a tool, if all that are so named have one
+/// origin on one moving link; else the leaves' only frame.
 pub(super) fn last_frame<'n, C: Real>(
     leaves: &[FrameId],
     frames: &[Frame<C>],
     name: impl Fn(usize) -> &'n str,
 ) -> Option<FrameId> {
-    let first = *leaves.first()?;
     let is_near = |a: C, b: C| (a - b).abs() < C::from_f64(APART);
     let all_near = |a: &[C], b: &[C]| a.iter().zip(b).all(|(&a, &b)| is_near(a, b));
-    let at = &frames[first.0];
-    let has_its_origin = |leaf: &&FrameId| frames[leaf.0].slot == at.slot && all_near(&frames[leaf.0].T.p.0, &at.T.p.0);
-    if leaves.iter().filter(has_its_origin).count() < leaves.len() {
-        return None;
+    let of = |leaf: &FrameId| &frames[leaf.0];
+    let share = |a: &FrameId, b: &FrameId| of(a).slot == of(b).slot && all_near(&of(a).T.p.0, &of(b).T.p.0);
+    let tools: Vec<FrameId> = leaves.iter().copied().filter(|leaf| tool_rank(name(leaf.0)).is_some()).collect();
+    if let Some(tool) = tools.iter().min_by_key(|leaf| tool_rank(name(leaf.0))) {
+        return tools.iter().all(|other| share(tool, other)).then_some(*tool);
     }
-    let rows = |T: SE3<C>| T.to_matrix().concat();
-    let is_equal = |leaf: &&FrameId| all_near(&rows(frames[leaf.0].T), &rows(at.T));
-    match leaves.iter().find(|leaf| name(leaf.0) == "tool0") {
-        Some(tool) => Some(*tool),
-        None if leaves.iter().filter(is_equal).count() == leaves.len() => Some(first),
-        None => None,
-    }
+    let (first, rows) = (*leaves.first()?, |leaf: &FrameId| of(leaf).T.to_matrix().concat());
+    let is_equal = |leaf: &FrameId| share(&first, leaf) && all_near(&rows(leaf), &rows(&first));
+    leaves.iter().all(is_equal).then_some(first)
 }

@@ -50,7 +50,7 @@ pub struct ComputeArguments {
     #[command(flatten)]
     task: TaskArguments,
     /// Reference point of the momentum in {s}, m [default: the origin]
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z")]
     about: Option<String>,
     #[command(flatten)]
     wrenches: WrenchArguments,
@@ -101,6 +101,9 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
             }
         }
         let outputs = model.compute(query, &slices, &environment)?;
+        if outputs.iter().flatten().any(|x| !x.is_finite()) {
+            failure::note(&format!("{}: the numbers are too large; entries overflow", hyphenated(query.name())));
+        }
         found.push(OneState { query, model: &model, inputs, environment, outputs });
     }
     if arguments.robot.json {

@@ -72,19 +72,19 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "HOW", default_value = "differences")]
     acceleration: How,
     /// Weight of the robot file's values for parameters that the data does not determine
-    #[arg(long, value_name = "WEIGHT", default_value = "0.3", allow_hyphen_values = true)]
+    #[arg(long, value_name = "WEIGHT", default_value = "0.3")]
     prior: String,
     /// Reduce the weight of large residuals (Huber)
     #[arg(long)]
     robust: bool,
     /// Percent of each log to fit, in tens; the rest is predicted
-    #[arg(long, value_name = "PERCENT", default_value = "100", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PERCENT", default_value = "100")]
     fit: String,
     /// Add Stribeck friction, with this velocity, rad/s or m/s
-    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SPEED")]
     stribeck: Option<String>,
     /// Width of Coulomb friction, μ tanh(θ̇/w), rad/s or m/s
-    #[arg(long, value_name = "SPEED", default_value = "0.05", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SPEED", default_value = "0.05")]
     width: String,
     /// Then refine on rollouts: motions of 0.3 s, driven by the measured forces, by exact gradients
     #[arg(long)]
@@ -99,17 +99,17 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "M,DEVIATION")]
     total_mass: Option<String>,
     /// Bounds of a parameter
-    #[arg(long, value_name = "NAME=LOW,HIGH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NAME=LOW,HIGH")]
     between: Vec<String>,
     /// A box in the link's frame that contains its centre of mass, m
-    #[arg(long, value_name = "LINK=x,y,z,X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LINK=x,y,z,X,Y,Z")]
     center_in: Vec<String>,
     /// Lock a joint that the log does not move, at this position, rad or m; `*` matches any text: 'gripper_*=0'
-    #[arg(long, value_name = "JOINT=POSITION", allow_hyphen_values = true)]
+    #[arg(long, value_name = "JOINT=POSITION")]
     lock: Vec<String>,
     /// Joints that one rotor turns together, as in the wrists of some arms: its inertia and friction act on the sum of
     /// their motions, each times its ratio, 1 unless it is given
-    #[arg(long, value_name = "JOINT[=RATIO],JOINT[=RATIO]", allow_hyphen_values = true)]
+    #[arg(long, value_name = "JOINT[=RATIO],JOINT[=RATIO]")]
     coupled: Vec<String>,
     /// The log's names of joints, in the robot's order
     #[arg(long, value_name = "NAME,NAME,…", value_delimiter = ',')]

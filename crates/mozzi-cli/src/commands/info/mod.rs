@@ -82,7 +82,8 @@ pub fn surroundings(model: &Model) -> String {
     format!("gravity: {} m/s²; end effector: {tip}", tuple(&model.gravity().0))
 }
 
-/// " (`ee_link` has the same origin)", if the end effector was chosen among leaves in one place.
+/// " (`ee_link` has the same origin)", or " (by its name; other ends: `finger`)", if the end effector was chosen among
+/// leaves.
 fn coinciding(model: &Model, chosen: FrameId) -> String {
     let robot = model.description();
     let parents: BTreeSet<&str> = robot.joints.iter().map(|joint| joint.parent.as_str()).collect();
@@ -93,12 +94,21 @@ fn coinciding(model: &Model, chosen: FrameId) -> String {
         model.forward_kinematics(&zero, frame).is_ok_and(|T| (0..3).all(|k| (T.p.0[k] - at.p.0[k]).abs() < 1e-9))
     };
     let name = model.frame_name(chosen);
-    let others = model.frames().filter(|&(frame, other)| other != name && is_leaf(other) && is_there(frame));
-    let others: Vec<String> = others.map(|(_, other)| format!("`{other}`")).collect();
-    match (is_leaf(name) && robot.end_effector.is_none(), others.len()) {
-        (true, 1) => format!(" ({} has the same origin)", others[0]),
-        (true, 2..) => format!(" ({} have the same origin)", others.join(", ")),
-        _ => String::new(),
+    if !is_leaf(name) || robot.end_effector.is_some() {
+        return String::new();
+    }
+    let others = model.frames().filter(|&(_, other)| other != name && is_leaf(other));
+    let (there, elsewhere): (Vec<_>, Vec<_>) = others.partition(|&(frame, _)| is_there(frame));
+    let list = |frames: &[(FrameId, &str)]| {
+        let names: Vec<String> = frames.iter().map(|(_, name)| format!("`{name}`")).collect();
+        names.join(", ")
+    };
+    match (&there[..], &elsewhere[..]) {
+        ([], []) => String::new(),
+        ([_], []) => format!(" ({} has the same origin)", list(&there)),
+        (_, []) => format!(" ({} have the same origin)", list(&there)),
+        (_, [.., _, _, _, _]) => format!(" (by its name, of {} ends)", elsewhere.len() + 1),
+        _ => format!(" (by its name; other ends: {})", list(&elsewhere)),
     }
 }
 

@@ -178,7 +178,7 @@ impl<'m> Terms<'m> {
                 ));
             }
             Err(mozzi::Error::SingularTask { .. }) if self.model.n() < 6 && !is_named => failure::note(&format!(
-                "Λ and η are omitted: {} joints cannot move in all six directions; choose some, such as --task vx,vz",
+                "Λ and η are omitted: {} velocities are no motion in all six directions; choose some, such as --task vx,vz",
                 self.model.n()
             )),
             Err(error) if is_named && !is_singular(&error) => return Err(error.into()),
