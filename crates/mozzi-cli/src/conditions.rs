@@ -2,6 +2,7 @@
 
 use crate::angles;
 use crate::failure::{self, Failure, Result};
+use crate::numbers::angle;
 use crate::text::scalar;
 use clap::Args;
 use mozzi::Model;
@@ -14,7 +15,7 @@ const LISTED: usize = 12;
 pub struct EventArguments {
     /// End the motion when this becomes true; may be repeated. Compares with a number: `elbow > 1.2` (rising through
     /// it), `<` (falling), `=` (either). On the left a joint's position, `theta_2`, `dtheta_2`, `dtheta_elbow`, or
-    /// `tool0.z` (a frame's origin in {s}); or `joint-limit` alone: any joint's limit
+    /// `tool0.z` (a frame's origin in {s}); or `joint-limit` alone: any joint's limit. Angles may be 90deg or pi/2
     #[arg(long, value_name = "CONDITION", allow_hyphen_values = true)]
     until: Vec<String>,
     /// Report when this becomes true, and continue; may be repeated
@@ -31,8 +32,8 @@ impl EventArguments {
                 "--deg: conditions of --until and --report-event are in radians, expected no --deg",
             ));
         }
-        for (flag, list, stop) in [("--until", &self.until, true), ("--report-event", &self.report_event, false)] {
-            for text in list {
+        for (flag, list, stop) in [("--until", self.until(), true), ("--report-event", self.report_event(), false)] {
+            for text in &list {
                 let wrong = |error| Failure::wrong(format!("{flag} {error}"));
                 let these = Event::condition(model, text).map_err(wrong)?;
                 events.extend(these.into_iter().map(|event| Event { stop, ..event }));
@@ -51,8 +52,26 @@ impl EventArguments {
 
     /// Conditions that did not become true.
     pub fn missed(&self, events: &[Occurrence]) -> Vec<String> {
-        let all = self.until.iter().chain(&self.report_event).map(|text| text.trim());
-        all.filter(|text| !events.iter().any(|event| Event::is_of(&event.name, text))).map(str::to_string).collect()
+        let all = self.until().into_iter().chain(self.report_event());
+        all.filter(|text| !events.iter().any(|event| Event::is_of(&event.name, text))).collect()
+    }
+
+    fn until(&self) -> Vec<String> {
+        self.until.iter().map(|text| in_radians(text)).collect()
+    }
+
+    fn report_event(&self) -> Vec<String> {
+        self.report_event.iter().map(|text| in_radians(text)).collect()
+    }
+}
+
+/// `elbow > 90deg` with its number in radians.
+fn in_radians(text: &str) -> String {
+    let text = text.trim();
+    let number = text.rfind(['=', '<', '>']).map(|at| text.split_at(at + 1));
+    match number.map(|(before, number)| (before, number.trim(), angle("--until", number.trim()))) {
+        Some((before, number, Ok(angle))) if number.parse::<f64>().is_err() => format!("{before} {angle}"),
+        _ => text.to_string(),
     }
 }
 

@@ -1,5 +1,5 @@
-//! Goals of the end effector: by flags, or tables of poses in CSV files with columns x y z of the origin and qw qx qy
-//! qz of the orientation, in {s}.
+//! Goals of the end effector: by flags, or tables in CSV files with columns x y z of the origin, and qw qx qy qz or roll
+//! pitch yaw of the orientation, in {s}.
 
 use crate::angles::question;
 use crate::failure::{Failure, Result};
@@ -9,7 +9,9 @@ use clap::Args;
 use mozzi::{SE3, SO3, Vec3};
 use mozzi_motion::Goal;
 
-const COLUMNS: [&str; 7] = ["qw", "qx", "qy", "qz", "x", "y", "z"];
+const POSITION: [&str; 3] = ["x", "y", "z"];
+const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];
+const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 
 #[derive(Args, Debug, Default)]
 pub struct GoalArguments {
@@ -43,46 +45,93 @@ impl GoalArguments {
             }
             (None, None) => None,
         };
-        Ok(match (R, position.map(Vec3)) {
-            (Some(R), Some(p)) => Some(Goal::Pose(SE3::new(R, p))),
-            (None, Some(p)) => Some(Goal::Position(p)),
-            (Some(R), None) => Some(Goal::Orientation(R)),
-            (None, None) => None,
-        })
+        Ok(goal(R, position.map(Vec3)))
     }
 }
 
-/// Poses and the line of each in the file.
-pub fn read(file: &str) -> Result<Vec<(u64, SE3)>> {
+/// The goal of each row, and its line in the file.
+pub fn read(file: &str) -> Result<Vec<(u64, Goal)>> {
     let mut text = TextTable::open(file)?;
     let header = text.header.names.clone();
-    let mut places = [0; 7];
-    for (place, name) in places.iter_mut().zip(COLUMNS) {
-        *place = header.iter().position(|cell| cell == name).ok_or_else(|| {
-            Failure::wrong(format!("{file}:1: column `{name}` is missing, expected the columns {}", COLUMNS.join(" ")))
-        })?;
-    }
-    if let Some(unknown) = header.iter().position(|cell| !COLUMNS.contains(&cell.as_str())) {
-        let (expected, found) = (COLUMNS.join(" "), &header[unknown]);
+    let expected = "x y z, and qw qx qy qz or roll pitch yaw (rad) or neither; or an orientation alone";
+    let known = [&POSITION[..], &QUATERNION, &RPY].concat();
+    if let Some(unknown) = header.iter().position(|cell| !known.contains(&cell.as_str())) {
+        let found = &header[unknown];
         return Err(Failure::wrong(format!(
-            "{file}:1: column {} is called `{found}`, expected {expected}",
+            "{file}:1: column {} is called `{found}`, expected the columns {expected}",
             unknown + 1
         )));
     }
-    let (mut poses, commas) = (Vec::new(), text.has_decimal_commas());
+    let position = group(file, &header, POSITION, expected)?;
+    let (quaternion, rpy) = (group(file, &header, QUATERNION, expected)?, group(file, &header, RPY, expected)?);
+    if quaternion.is_some() && rpy.is_some() {
+        return Err(Failure::wrong(format!("{file}:1: two orientations, expected qw qx qy qz or roll pitch yaw")));
+    }
+    let (mut goals, commas) = (Vec::new(), text.has_decimal_commas());
     text.rows(false, |line, record| {
-        let mut pose = [0.0; 7];
-        for ((entry, name), place) in pose.iter_mut().zip(COLUMNS).zip(places) {
+        let entry = |place: usize, name: &str| {
             let cell = if commas { record[place].replace(',', ".") } else { record[place].to_string() };
-            *entry = number(format!("{file}:{line}: column {} (`{name}`)", place + 1), &cell)?;
-        }
-        poses.push((line, from_pose(&format!("{file}:{line}: qw qx qy qz"), pose)?));
+            number(format!("{file}:{line}: column {} (`{name}`)", place + 1), &cell)
+        };
+        let p = position.map(|places| numbers(places, POSITION, &entry)).transpose()?.map(Vec3);
+        let R = match (quaternion, rpy) {
+            (Some(places), _) => {
+                let [w, x, y, z] = numbers(places, QUATERNION, &entry)?;
+                Some(from_pose(&format!("{file}:{line}: qw qx qy qz"), [w, x, y, z, 0.0, 0.0, 0.0])?.R)
+            }
+            (_, Some(places)) => {
+                let [roll, pitch, yaw] = numbers(places, RPY, &entry)?;
+                Some(SO3::from_rpy(roll, pitch, yaw))
+            }
+            _ => None,
+        };
+        let goal = goal(R, p).ok_or_else(|| Failure::wrong(format!("{file}:1: expected the columns {expected}")))?;
+        goals.push((line, goal));
         Ok(())
     })?;
-    if poses.is_empty() {
+    if goals.is_empty() {
         return Err(Failure::wrong(format!("{file} has no rows below its header")));
     }
-    Ok(poses)
+    Ok(goals)
+}
+
+/// The places of columns that belong together; none if none is there.
+fn group<const K: usize>(
+    file: &str,
+    header: &[String],
+    names: [&str; K],
+    expected: &str,
+) -> Result<Option<[usize; K]>> {
+    let places = names.map(|name| header.iter().position(|cell| cell == name));
+    match places.iter().position(Option::is_none) {
+        None => Ok(Some(places.map(Option::unwrap_or_default))),
+        Some(_) if places.iter().all(Option::is_none) => Ok(None),
+        Some(k) => {
+            let name = names[k];
+            Err(Failure::wrong(format!("{file}:1: column `{name}` is missing, expected the columns {expected}")))
+        }
+    }
+}
+
+fn numbers<const K: usize>(
+    places: [usize; K],
+    names: [&str; K],
+    entry: &dyn Fn(usize, &str) -> Result<f64>,
+) -> Result<[f64; K]> {
+    let mut found = [0.0; K];
+    for ((x, place), name) in found.iter_mut().zip(places).zip(names) {
+        *x = entry(place, name)?;
+    }
+    Ok(found)
+}
+
+fn goal(R: Option<SO3>, p: Option<Vec3>) -> Option<Goal> {
+    match (R, p) {
+        (Some(R), Some(p)) => Some(Goal::Pose(SE3::new(R, p))),
+        (None, Some(p)) => Some(Goal::Position(p)),
+        (Some(R), None) => Some(Goal::Orientation(R)),
+        (None, None) => None,
+    }
 }
 
 /// The pose of a quaternion whose length differs from 1 by at most 10⁻³, as for a floating base.

@@ -273,7 +273,7 @@ Numbers are float64, float32 or integers. Wrenches given by flags are the same i
 Results, by rows: (N,), (N, n), (N, n, n), (N, 6, n) angular rows first, (N, 4, 4)
   .npy             one array; .npz: one array per output, by name
   .arrow .csv      one column per entry: tau_1 …, M_1_1, M_1_2 …; CSV of vectors begins with t and the inputs
-NaN in a state gives NaN in the results of that state only.";
+NaN in a state gives NaN in the results of that state only; text tables (.csv) have none.";
 
 /// The arguments, and whether their outputs can be written; flags that have no effect are an error.
 fn parsed(words: Vec<OsString>) -> Result<(Arguments, Result<()>), clap::Error> {

@@ -110,9 +110,17 @@ fn describe(files: &[File], origin: &Origin) -> String {
     format!("{}:{line}:{column}{}", file.name, from(files, origin))
 }
 
+/// Inner and outer calls that a message shows; those between are counted.
+const SHOWN: [usize; 2] = [4, 2];
+
 /// `, from ur.urdf.xacro:40 (prefix = "left_")`, for each call.
 fn from(files: &[File], origin: &Origin) -> String {
-    let calls = origin.calls.iter().filter_map(|(file, at, arguments)| {
+    let (count, [inner, outer]) = (origin.calls.len(), SHOWN);
+    let between = if count > inner + outer + 1 { inner..count - outer } else { 0..0 };
+    let calls = origin.calls.iter().enumerate().filter_map(|(k, (file, at, arguments))| {
+        if between.contains(&k) {
+            return (k == inner).then(|| format!(", from {} more calls", between.len()));
+        }
         let file = files.get(*file)?;
         let line = position(&file.text, *at).0;
         let arguments = if arguments.is_empty() { String::new() } else { format!(" ({arguments})") };

@@ -29,7 +29,7 @@ pub struct IkArguments {
     robot: RobotArguments,
     #[command(flatten)]
     goal: GoalArguments,
-    /// Poses in a CSV file with columns x y z qw qx qy qz, one per row ("-": standard input)
+    /// Goals in a CSV file, one per row: columns x y z, or with qw qx qy qz or roll pitch yaw, or these alone ("-": standard input)
     #[arg(long = "in", value_name = "FILE.csv", conflicts_with_all = ["position", "rpy", "quaternion"])]
     input: Option<String>,
     /// File for the table theta_1 …, reached, angle, distance, starts, iterations [default: standard output]
@@ -134,11 +134,11 @@ impl IkArguments {
         interrupt::listen();
         let (progress, begin) = (Progress::new("inverse kinematics", poses.len(), "poses"), Instant::now());
         let (mut theta, mut numbers, mut missed) = (Vec::new(), [const { Vec::new() }; 5], Vec::new());
-        for (row, (line, T)) in poses.iter().enumerate() {
+        for (row, (line, goal)) in poses.iter().enumerate() {
             if interrupt::is_requested() {
                 break;
             }
-            let (positions, residual, starts, iterations) = match solver.solve_with(Goal::Pose(*T), guess, secondary) {
+            let (positions, residual, starts, iterations) = match solver.solve_with(*goal, guess, secondary) {
                 Ok(Solution { theta, residual, starts, iterations }) => (theta, residual, starts, iterations),
                 Err(mozzi_motion::Error::NotReached { theta, residual, starts, iterations, .. }) => {
                     missed.push(line);

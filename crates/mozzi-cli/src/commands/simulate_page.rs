@@ -119,6 +119,9 @@ fn roll_pitch_yaw(R: SO3) -> [f64; 3] {
     [r[2][1].atan2(r[2][2]), (-r[2][0]).clamp(-1.0, 1.0).asin(), r[1][0].atan2(r[0][0])]
 }
 
+/// A drift above this part of the largest kinetic energy means that the step is too long.
+const COARSE: f64 = 0.1;
+
 /// Some rows of a motion: t, θ, 𝒦, 𝒫, drift.
 pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
     let last = motion.len() - 1;
@@ -208,10 +211,12 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
         energy(end.applied_work)
     ));
     let drift = if account.largest_drift <= f64::EPSILON * scale { 0.0 } else { account.largest_drift };
+    let is_coarse = drift > COARSE * account.largest_kinetic_energy;
     page.line(format!(
-        "drift: energy error of the method, at most {} J; largest kinetic energy {} J",
+        "drift: energy error of the method, at most {} J; largest kinetic energy {} J{}",
         about(drift),
-        energy(account.largest_kinetic_energy)
+        energy(account.largest_kinetic_energy),
+        if is_coarse { "; the step is too long, or another --method fits" } else { "" }
     ));
     if let Some(error) = &outcome.tracking {
         let unit = Units::of(model).input(0);

@@ -112,8 +112,13 @@ fn explain(source: &Source, dialect: Dialect, error: Error, unfinished: Option<U
             match rest.starts_with('<') {
                 true => syntax(at(pos), "a second root element begins here, expected the file's end".to_string())
                     .help("a file contains one robot; check for an extra closing tag before it"),
-                false => syntax(at(pos), format!("found `{word}`, expected an element"))
-                    .help("is it a URDF? It begins with <robot name=\"…\">"),
+                false => {
+                    let help = match word.contains(',') {
+                        true => "is it a table? A robot's file is given before it",
+                        false => "is it a URDF? It begins with <robot name=\"…\">",
+                    };
+                    syntax(at(pos), format!("found `{word}`, expected an element")).help(help)
+                }
             }
         }
         Error::InvalidChar(expected, found, pos) => {

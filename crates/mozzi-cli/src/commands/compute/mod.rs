@@ -9,6 +9,7 @@ mod subject;
 mod table;
 
 use super::assemble::{needs_constraints, violation};
+use crate::angles;
 use crate::failure::{self, Failure, Result};
 use crate::inputs::{InputArguments, STATE};
 use crate::json;
@@ -88,6 +89,9 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
                 queries.len()
             )));
         };
+        if angles::are_degrees() {
+            failure::note(&format!("{file} is read in radians: --deg is for the angles of flags and of printed text"));
+        }
         return Job { file, query, model, environment, table, robot }.run();
     }
     let mut found = Vec::new();

@@ -66,12 +66,16 @@ impl OneState<'_> {
             Quantity::named(model, output.name, symbol, query.name(), output.unit, values)
         });
         page.lines(&quantities(model, &found.collect::<Vec<_>>(), false));
+        let is_of_parameters = others.iter().any(|(output, _)| output.dims.contains(&Dim::Parameters));
         let is_named = others.iter().any(|(output, _)| output.dims.contains(&Dim::N));
         let blocks = others.into_iter().flat_map(|(output, values)| blocks(output, &units, query, model, values));
         page.lines(&beside(&blocks.collect::<Vec<_>>()));
         if is_named && (is_verbose || model.n() <= NAMED) {
             let names: Vec<String> = model.velocity_names().zip(1..).map(|(name, j)| format!("{j} {name}")).collect();
             page.line("a row or a column for each velocity:").lines(&flow(&names));
+        }
+        if is_of_parameters {
+            page.line("a column for each parameter, in this order:").lines(&flow(&model.parameter_names()));
         }
         for (frame, F) in self.environment.applied.iter().filter(|_| declaration.uses.has(Uses::WRENCHES)) {
             let (frame, m, f) = (model.frame_name(*frame), tuple(&F.m.0), tuple(&F.f.0));
