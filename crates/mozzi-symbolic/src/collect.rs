@@ -51,6 +51,28 @@ impl Grouping<'_> {
         Expression::sum(parts)
     }
 
+    /// As [`shortest`](Self::shortest), with the factors that all terms have outside.
+    pub fn factored(&self, terms: &[Term]) -> Expression {
+        let plain = self.shortest(terms);
+        let mut common: Option<Monomial> = None;
+        for (monomial, _) in terms {
+            let least = |known: Monomial| {
+                let powers = known.factors().map(|(id, k)| (id, k.min(monomial.power(id)))).filter(|(_, k)| *k > 0);
+                powers.fold(Monomial::default(), |product, (id, k)| product.times(&Monomial::atom(id, k)))
+            };
+            common = Some(common.map_or_else(|| monomial.clone(), least));
+        }
+        let common = common.unwrap_or_default();
+        if terms.len() < 2 {
+            return plain;
+        }
+        let inverse = common.inverse();
+        let inner: Vec<Term> = terms.iter().map(|(m, x)| (m.times(&inverse), x.clone())).collect();
+        let (size, inner) = content(&inner);
+        let outside = times(size, self.with_factor(&common, self.shortest(&inner)));
+        if outside.cost() <= plain.cost() { outside } else { plain }
+    }
+
     /// Terms by the products of velocities, each with the shortest grouping of its factor.
     pub fn by_velocities(&self, terms: &[Term]) -> Expression {
         Expression::sum(self.by_class(terms, Class::Rate))

@@ -200,9 +200,7 @@ pub(crate) fn name(formulas: &mut [Formula]) -> Vec<Expression> {
     let mut graph = Graph::default();
     let mut roots = Vec::new();
     for formula in formulas.iter() {
-        for k in 0..formula.entries.len() {
-            roots.push(graph.add(&formula.entries[k]));
-        }
+        roots.extend(formula.entries.iter().chain(&formula.denominator).map(|root| graph.add(root)));
     }
     graph.share(&roots);
     let mut uses = vec![0_usize; graph.nodes.len()];
@@ -223,7 +221,7 @@ pub(crate) fn name(formulas: &mut [Formula]) -> Vec<Expression> {
         if negative { expression.negated() } else { expression }
     });
     for formula in formulas.iter_mut() {
-        for entry in &mut formula.entries {
+        for entry in formula.entries.iter_mut().chain(&mut formula.denominator) {
             if let Some(expression) = written.next() {
                 *entry = expression;
             }

@@ -16,6 +16,8 @@ pub struct Formula {
     /// Whether it is a symmetric matrix.
     pub is_symmetric: bool,
     pub(crate) entries: Vec<Expression>,
+    /// The denominator of all entries.
+    pub(crate) denominator: Option<Expression>,
 }
 
 /// The formulas of a quantity, proven.
@@ -40,6 +42,36 @@ pub struct Derivation {
 }
 
 impl Derivation {
+    /// Different denominators, each with its index in order.
+    pub(crate) fn denominators(&self) -> impl Iterator<Item = (usize, &Expression)> {
+        let all = self.formulas.iter().filter_map(|formula| formula.denominator.as_ref());
+        let mut known: Vec<&Expression> = Vec::new();
+        all.for_each(|x| {
+            if !known.contains(&x) {
+                known.push(x)
+            }
+        });
+        known.into_iter().enumerate()
+    }
+
+    /// The number of a formula's denominator among several, from 1: Δ₂; `Some(None)` if there is only one.
+    pub(crate) fn denominator_number(&self, formula: &Formula) -> Option<Option<usize>> {
+        let own = formula.denominator.as_ref()?;
+        self.denominators().find(|(_, other)| *other == own).map(|(k, _)| self.denominator_name(k))
+    }
+
+    /// The number of a denominator by its index; none for the only one.
+    pub(crate) fn denominator_name(&self, index: usize) -> Option<usize> {
+        (self.denominators().count() > 1).then_some(index + 1)
+    }
+
+    /// All expressions that are printed.
+    pub(crate) fn expressions(&self) -> impl Iterator<Item = &Expression> {
+        self.names
+            .iter()
+            .chain(self.formulas.iter().flat_map(|formula| formula.entries.iter().chain(&formula.denominator)))
+    }
+
     /// The operations of all that is printed; entries below the diagonal of symmetric matrices are not counted.
     pub fn operations(&self) -> Operations {
         let mut atoms = std::collections::BTreeSet::new();
@@ -53,6 +85,11 @@ impl Derivation {
         self.names.iter().for_each(&mut add);
         for formula in &self.formulas {
             formula.distinct().for_each(|k| add(&formula.entries[k]));
+        }
+        self.denominators().for_each(|(_, denominator)| add(denominator));
+        // 1/Δ, and each entry times it
+        for formula in self.formulas.iter().filter(|formula| formula.denominator.is_some()) {
+            all.products += 1 + formula.distinct().filter(|&k| formula.entries[k] != Expression::ZERO).count();
         }
         all.sines = atoms.iter().filter(|&&id| self.table.class(id) == Class::Trigonometric).count();
         all

@@ -7,11 +7,14 @@ use crate::cse;
 use crate::derivation::{Derivation, Formula};
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL, MOST_LINKS};
 use crate::expression::Expression;
+use crate::fraction::Fraction;
+use crate::inverse::{Robot, check_inverse};
 use crate::kernel::{Kernel, check_fault};
 use crate::order::ranks;
 use crate::parameters::{Equal, Meaning, Parameters, Symbols};
-use crate::polynomial::Polynomial;
+use crate::polynomial::{Monomial, Polynomial};
 use crate::proof;
+use crate::rational::Rational;
 use crate::sines::shortened;
 use crate::symbol::{Symbol, end, start, with_table};
 use crate::table::Table;
@@ -70,7 +73,7 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
     let declaration = query.declaration();
     let quantity = declaration.name;
     if declaration.divides {
-        return Err(Error::NotPolynomial { quantity, what: "divides by pivots".into() });
+        check_inverse(quantity, model.n())?;
     }
     let (description, parameters) = described(model, text, options)?;
     let symbolic = description.build()?;
@@ -87,36 +90,53 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
         names_of_inputs.push("F");
     }
     let kernel = Kernel::new(&query, &symbolic, tip)?;
-    let outputs = kernel.outputs(&inputs);
-    check_fault(quantity)?;
-    let mut found: Vec<Vec<Polynomial>> = Vec::new();
-    for output in &outputs {
-        found.push(output.iter().map(|x| x.polynomial()).collect());
-    }
-    let terms = || found.iter().flatten().map(|p| p.terms().len());
+    let are_fractions = options.symbols.are_all();
+    let found: Vec<Fraction> = match declaration.divides {
+        true => Robot { model, symbolic: &symbolic, are_fractions }.fractions(&query, &inputs)?,
+        false => {
+            let outputs = kernel.outputs(&inputs);
+            check_fault(quantity)?;
+            let whole = |output: Vec<Symbol>| Fraction::whole(output.iter().map(|x| x.polynomial()).collect());
+            outputs.into_iter().map(whole).collect()
+        }
+    };
+    let terms = || found.iter().flat_map(Fraction::polynomials).map(|p| p.terms().len());
     for (terms, most) in [(terms().max().unwrap_or(0), LONGEST), (terms().sum(), LONGEST_IN_ALL)] {
         if terms > most {
             return Err(Error::TooLong { quantity, terms, most });
         }
     }
-    let mut formulas: Vec<Formula> = with_table(|table| {
+    let formulas: Vec<Formula> = with_table(|table| {
         declaration
             .outputs
             .iter()
             .zip(query.shapes(model))
             .zip(&found)
-            .map(|((output, shape), entries)| Formula {
-                name: output.name,
-                shape,
-                is_symmetric: output.is_symmetric,
-                entries: written(table, entries, options.collect),
+            .map(|((output, shape), found)| {
+                let (entries, denominator) = fraction(table, found, options.collect);
+                Formula { name: output.name, shape, is_symmetric: output.is_symmetric, entries, denominator }
             })
             .collect()
     });
+    let prove = |formulas: &[Formula], names: &[Expression]| proof::prove(quantity, &kernel, &inputs, formulas, names);
+    let derivation = finished(quantity, formulas, options, parameters, (&names_of_inputs, &inputs), prove)?;
+    proof::compare(&derivation, &query, model, tip)?;
+    Ok(derivation)
+}
+
+/// A derivation of these formulas, which are proven first: ends the session of symbols.
+pub(crate) fn finished(
+    quantity: &'static str,
+    mut formulas: Vec<Formula>,
+    options: &Options,
+    parameters: Parameters,
+    (names_of_inputs, inputs): (&[&'static str], &[Vec<Symbol>]),
+    prove: impl Fn(&[Formula], &[Expression]) -> Result<(), Error>,
+) -> Result<Derivation, Error> {
     let names = if options.names { cse::name(&mut formulas) } else { Vec::new() };
-    proof::prove(quantity, &kernel, &inputs, &formulas, &names)?;
+    prove(&formulas, &names)?;
     let id = |x: &Symbol| x.single_atom().unwrap_or_default();
-    let ids = names_of_inputs.into_iter().zip(&inputs).map(|(of, all)| (of, all.iter().map(id).collect())).collect();
+    let ids = names_of_inputs.iter().zip(inputs).map(|(of, all)| (*of, all.iter().map(id).collect())).collect();
     let table = end();
     let has_fractions = options.symbols.are_all();
     let (angles, angle_error, legend_of_all) = (parameters.angles, parameters.angle_error, parameters.legend);
@@ -131,21 +151,39 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
         has_fractions,
         table,
     };
-    let entries = derivation.formulas.iter().flat_map(|formula| &formula.entries);
-    let entries: Vec<&Expression> = derivation.names.iter().chain(entries).collect();
+    let entries: Vec<&Expression> = derivation.expressions().collect();
     derivation.legend = legend_of(&derivation.table, &entries, legend_of_all);
-    proof::compare(&derivation, &query, model, tip)?;
     Ok(derivation)
+}
+
+/// The forms of a fraction's entries and denominator.
+fn fraction(table: &mut Table, fraction: &Fraction, collect: Collect) -> (Vec<Expression>, Option<Expression>) {
+    if fraction.is_whole() {
+        return (written(table, &fraction.numerators, collect), None);
+    }
+    let all: Vec<Polynomial> = fraction.polynomials().cloned().collect();
+    let mut entries = all_written(table, &all, collect, |grouping, terms| grouping.factored(terms));
+    let denominator = entries.pop();
+    (entries, denominator)
 }
 
 /// The shortest forms of polynomials.
 pub(crate) fn written(table: &mut Table, entries: &[Polynomial], collect: Collect) -> Vec<Expression> {
+    all_written(table, entries, collect, |grouping, terms| grouping.shortest(terms))
+}
+
+fn all_written(
+    table: &mut Table,
+    entries: &[Polynomial],
+    collect: Collect,
+    shortest: impl Fn(&Grouping, &[(Monomial, Rational)]) -> Expression,
+) -> Vec<Expression> {
     let shortened: Vec<_> = entries.iter().map(|p| shortened(table, p)).collect();
     let classes: Vec<Class> = (0..table.len() as u32).map(|id| table.class(id)).collect();
     let ranks = ranks(table);
     let grouping = Grouping { classes: &classes, ranks: &ranks };
     let write = |terms: &Vec<_>| match collect {
-        Collect::Shortest => grouping.shortest(terms),
+        Collect::Shortest => shortest(&grouping, terms),
         Collect::Velocities => grouping.by_velocities(terms),
     };
     shortened.iter().map(write).collect()

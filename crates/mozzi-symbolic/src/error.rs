@@ -7,6 +7,8 @@ use std::fmt;
 pub(crate) const LONGEST: usize = 30_000;
 /// The terms of all entries together.
 pub(crate) const LONGEST_IN_ALL: usize = 200_000;
+/// The velocities of a robot whose mass matrix is inverted.
+pub(crate) const MOST_VELOCITIES: usize = 4;
 /// The moving links of a robot whose equations are derived.
 pub(crate) const MOST_LINKS: usize = 1000;
 
@@ -23,6 +25,20 @@ pub enum Error {
         /// The quantity.
         quantity: &'static str,
         /// The operation of its kernel that has no polynomial result.
+        what: String,
+    },
+    /// The inverse of a matrix of so many velocities is too long.
+    InverseTooLong {
+        /// The quantity.
+        quantity: &'static str,
+        /// The robot's velocities.
+        velocities: usize,
+    },
+    /// A matrix has no inverse at any configuration.
+    Singular {
+        /// The quantity.
+        quantity: &'static str,
+        /// The matrix, the reason, and a remedy.
         what: String,
     },
     /// The robot has no recursion in the book's form.
@@ -59,8 +75,20 @@ impl fmt::Display for Error {
                 write!(
                     f,
                     "{quantity} {what}: it is no sum of products of sines and parameters. Derived are quantities \
-                     without an inverse, such as mass-matrix, velocity-product, gravity-forces and inverse-dynamics"
+                     without an inverse, such as mass-matrix, velocity-product, gravity-forces and inverse-dynamics, \
+                     and of those with one mass-matrix-inverse, forward-dynamics and task-space-dynamics"
                 )
+            }
+            Error::InverseTooLong { quantity, velocities } => {
+                let quantity = quantity.replace('_', "-");
+                write!(
+                    f,
+                    "{quantity} of {velocities} velocities is too long to read as one fraction, expected at most \
+                     {MOST_VELOCITIES}. Derive mass-matrix and bias-forces as sympy and solve with numbers, or lock joints"
+                )
+            }
+            Error::Singular { quantity, what } => {
+                write!(f, "{} is not derived: {what}", quantity.replace('_', "-"))
             }
             Error::NoRecursion(what) => write!(
                 f,

@@ -7,15 +7,21 @@
 
 mod angles;
 mod atom;
+mod base_parameters;
 mod collect;
 mod cse;
+mod dependence;
 mod derivation;
 mod derive;
 mod error;
 mod evaluate;
 mod expression;
+mod fraction;
+mod inverse;
 mod kernel;
+mod laurent;
 mod letters;
+mod minors;
 mod order;
 mod parameters;
 mod point;
@@ -30,10 +36,12 @@ mod symbol;
 mod table;
 
 pub use atom::{Class, Name};
+pub use base_parameters::base_parameters;
 pub use derivation::{Derivation, Formula};
 pub use derive::{Collect, Options, derive};
 pub use error::Error;
 pub use expression::Operations;
+pub use inverse::is_fraction;
 pub use parameters::{Equal, Meaning, Symbols};
 pub use print::Language;
 pub use rational::Rational;

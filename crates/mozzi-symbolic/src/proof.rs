@@ -38,13 +38,22 @@ fn substituted(point: &Point, p: &Polynomial) -> Symbol {
     sum
 }
 
-/// Compares formulas with the kernel at random rational points, exactly.
-pub(crate) fn prove(
+/// The values of expressions at a point, with those of named sub-expressions.
+pub(crate) fn value_at<'a>(point: &'a Point, names: &[Expression]) -> impl Fn(&Expression) -> Symbol + use<'a> {
+    let (atom, plain) = (|id: Id| constant(point, id), |x: &Rational| Symbol::from(x.clone()));
+    let mut values: Vec<Symbol> = Vec::new();
+    for name in names {
+        values.push(name.value(&atom, &plain, &values));
+    }
+    move |expression| expression.value(&atom, &plain, &values)
+}
+
+/// Calls a check with the kernel's outputs at random rational points.
+pub(crate) fn at_points(
     quantity: &'static str,
     kernel: &Kernel,
     inputs: &[Vec<Symbol>],
-    formulas: &[Formula],
-    names: &[Expression],
+    check: impl Fn(&Point, &[Vec<Symbol>]) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let mut random = Random(0x6d6f_7a7a_6921);
     for _ in 0..2 {
@@ -60,26 +69,41 @@ pub(crate) fn prove(
         let inputs: Vec<Vec<Symbol>> =
             inputs.iter().map(|input| input.iter().map(|&x| if is_angle(x) { x } else { at(x) }).collect()).collect();
         set_point(Some(point.clone()));
-        let expected = kernel.outputs_at(at, &inputs);
+        let outputs = kernel.outputs_at(at, &inputs);
         set_point(None);
-        let mut values: Vec<Symbol> = Vec::new();
-        let (atom, plain) = (|id: Id| constant(&point, id), |x: &Rational| Symbol::from(x.clone()));
-        for name in names {
-            values.push(name.value(&atom, &plain, &values));
-        }
-        for (formula, expected) in formulas.iter().zip(&expected) {
+        let outputs: Vec<Vec<Symbol>> = outputs.iter().map(|output| output.iter().map(|&x| at(x)).collect()).collect();
+        check_fault(quantity)?;
+        check(&point, &outputs)?;
+        check_fault(quantity)?;
+    }
+    Ok(())
+}
+
+/// Compares formulas with the kernel at random rational points, exactly.
+pub(crate) fn prove(
+    quantity: &'static str,
+    kernel: &Kernel,
+    inputs: &[Vec<Symbol>],
+    formulas: &[Formula],
+    names: &[Expression],
+) -> Result<(), Error> {
+    at_points(quantity, kernel, inputs, |point, outputs| {
+        let value = value_at(point, names);
+        for (formula, expected) in formulas.iter().zip(outputs) {
+            let below = formula.denominator.as_ref().map_or(Symbol::one(), &value);
             for (entry, (expression, &expected)) in formula.entries.iter().zip(expected).enumerate() {
-                let (found, expected) = (expression.value(&atom, &plain, &values), at(expected));
+                // multiplied by the denominator, so that only the kernel divides
+                let (found, expected) = (value(expression), below * expected);
                 if found != expected {
                     check_fault(quantity)?;
-                    let what = format!("{} instead of {}", f64::from(found), f64::from(expected));
+                    let [found, expected] = [found, expected].map(|x| f64::from(x) / f64::from(below));
+                    let what = format!("{found} instead of {expected}");
                     return Err(Error::NotProven { quantity, entry, what });
                 }
             }
         }
-        check_fault(quantity)?;
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 impl Derivation {
@@ -98,8 +122,13 @@ impl Derivation {
         for name in &self.names {
             values.push(name.value(&atom, &number, &values));
         }
-        let entry = |expression: &Expression| expression.value(&atom, &number, &values);
-        self.formulas.iter().map(|formula| formula.entries.iter().map(entry).collect()).collect()
+        let value = |expression: &Expression| expression.value(&atom, &number, &values);
+        let entries = |formula: &Formula| {
+            let below = formula.denominator.as_ref().map(value);
+            let entry = |entry: &Expression| below.map_or(value(entry), |below| value(entry) / below);
+            formula.entries.iter().map(entry).collect()
+        };
+        self.formulas.iter().map(entries).collect()
     }
 
     /// The numbers of the state in the order of the quantity's inputs.
@@ -149,7 +178,8 @@ pub(crate) fn compare(
     Ok(())
 }
 
-fn random_positions(model: &Model, random: &mut Random) -> Vec<f64> {
+/// θ with unit quaternions.
+pub(crate) fn random_positions(model: &Model, random: &mut Random) -> Vec<f64> {
     let mut theta = random.vector(model.nq(), 2.0);
     for place in model.configuration_space().places().iter().filter(|place| place.freedom != Freedom::One) {
         let quaternion = &mut theta[place.q..place.q + 4];

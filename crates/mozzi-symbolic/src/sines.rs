@@ -21,7 +21,8 @@ pub(crate) fn shortened(table: &mut Table, p: &Polynomial) -> Vec<Term> {
         let groups: BTreeSet<usize> =
             sines.iter().flat_map(|(m, _)| m.factors()).filter_map(|(id, _)| table.group(id)).collect();
         for group in groups {
-            sines = shorter(table, sines, group);
+            let [sums, angles] = [true, false].map(|by_sums| shorter(table, sines.clone(), group, by_sums));
+            sines = if size(table, &angles) < size(table, &sums) { angles } else { sums };
         }
         terms.extend(sines.into_iter().map(|(sines, x)| (rest.times(&sines), x)));
     }
@@ -43,13 +44,15 @@ fn size(table: &Table, terms: &[Term]) -> (usize, i32, usize) {
 /// A sine or cosine of one cumulative sum, with its power.
 type Single = (usize, bool);
 
-/// The shortest of: the sum as it is; products with cosines, or sines, of each cumulative sum to the first power only.
-fn shorter(table: &mut Table, terms: Vec<Term>, group: usize) -> Vec<Term> {
+/// The shortest of: the sum as it is; products with cosines, or sines, of each cumulative sum, or else of each angle, to
+/// the first power only.
+fn shorter(table: &mut Table, terms: Vec<Term>, group: usize, by_sums: bool) -> Vec<Term> {
     let groups: HashMap<Id, Option<usize>> =
         terms.iter().flat_map(|(m, _)| m.factors()).map(|(id, _)| (id, table.group(id))).collect();
     let of_group = |m: &Monomial| m.factors().map(|(id, _)| id).find(|id| groups[id] == Some(group));
     let harmonics: BTreeSet<Id> = terms.iter().filter_map(|(m, _)| of_group(m)).collect();
-    let coordinates: HashMap<Id, Vec<i64>> = harmonics.iter().map(|&id| (id, cumulative(table, id))).collect();
+    let coordinates: HashMap<Id, Vec<i64>> =
+        harmonics.iter().map(|&id| (id, coordinates(table, id, by_sums))).collect();
     let is_single = |k: &[i64]| k.iter().map(|k| k.abs()).sum::<i64>() <= 1;
     if coordinates.values().all(|k| is_single(k)) {
         return terms;
@@ -95,7 +98,7 @@ fn shorter(table: &mut Table, terms: Vec<Term>, group: usize) -> Vec<Term> {
         for ((rest, powers), x) in total {
             let mut product = rest;
             for ((angle, is_cosine), k) in powers {
-                let (id, sign) = single(table, group, angle, is_cosine);
+                let (id, sign) = single(table, group, angle, is_cosine, by_sums);
                 product = product.times(&Monomial::atom(id, k));
                 assert!(sign > 0 || is_cosine, "a cumulative sum starts with a positive angle");
             }
@@ -110,28 +113,31 @@ fn shorter(table: &mut Table, terms: Vec<Term>, group: usize) -> Vec<Term> {
     best
 }
 
-/// The atom of a cumulative sum's sine or cosine.
-fn single(table: &mut Table, group: usize, angle: usize, is_cosine: bool) -> (Id, i64) {
+/// The atom of a cumulative sum's, or an angle's, sine or cosine.
+fn single(table: &mut Table, group: usize, angle: usize, is_cosine: bool, by_sums: bool) -> (Id, i64) {
     let angles = table.groups[group].angles.len();
     let mut harmonic = vec![0; angles];
     let (mut at, mut sign) = (angle, 1);
     loop {
         harmonic[at] = sign;
         match table.groups[group].before[at] {
-            Some((before, turned)) => (at, sign) = (before, sign * turned),
-            None => break,
+            Some((before, turned)) if by_sums => (at, sign) = (before, sign * turned),
+            _ => break,
         }
     }
-    // the sum's sign is chosen so that the first angle is positive: see `cumulative`
+    // the sum's sign is chosen so that the first angle is positive: see `coordinates`
     let first = harmonic.iter().find(|k| **k != 0).copied().unwrap_or(1);
     harmonic.iter_mut().for_each(|k| *k *= first);
     (table.id(Atom::Trig(Trig { group, is_cosine, harmonic })), 1)
 }
 
-/// How often each cumulative sum is taken: θ_i is that of i less, or plus, that of the angle before.
-fn cumulative(table: &Table, id: Id) -> Vec<i64> {
+/// How often each angle is taken, or each cumulative sum: θ_i is that of i less, or plus, that of the angle before.
+fn coordinates(table: &Table, id: Id, by_sums: bool) -> Vec<i64> {
     let Atom::Trig(trig) = table.atom(id) else { return Vec::new() };
     let group = &table.groups[trig.group];
+    if !by_sums {
+        return trig.harmonic.clone();
+    }
     let mut k = vec![0; trig.harmonic.len()];
     for (i, times) in trig.harmonic.iter().enumerate() {
         k[i] += times * group.signs[i];

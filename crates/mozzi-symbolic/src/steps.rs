@@ -235,7 +235,12 @@ fn finish(writer: Writer, all: Vec<Meaning>) -> Steps {
         .map(|(title, text, latex, shape, entries)| {
             let polynomials: Vec<_> = entries.iter().map(|x| x.polynomial()).collect();
             let entries = with_table(|table| written(table, &polynomials, Collect::Shortest));
-            Step { title, text, latex, formula: Formula { name: "", shape, is_symmetric: false, entries } }
+            Step {
+                title,
+                text,
+                latex,
+                formula: Formula { name: "", shape, is_symmetric: false, entries, denominator: None },
+            }
         })
         .collect();
     let table = end();

@@ -1,15 +1,17 @@
 //! Derivations: the book's equations letter by letter, SymPy's own Lagrangian derivation, one text for one robot.
 
+mod base_parameters;
 mod book;
 mod bounds;
 mod canonical;
+mod inverse;
 mod lagrange;
 mod printed;
 mod robots;
 
 use mozzi::Model;
 use mozzi::quantities::{Of, Query};
-use mozzi_symbolic::{Derivation, Error, Options, derive};
+use mozzi_symbolic::{Derivation, Error, Language, Options, derive};
 
 /// The model of a URDF text.
 pub fn model(text: &str) -> Model {
@@ -34,4 +36,12 @@ pub fn of(text: &str, quantity: &str, options: &Options) -> Derivation {
 /// The text of an embedded robot.
 pub fn embedded(robot: &str) -> &'static str {
     mozzi_urdf::embedded::text(robot).expect(robot)
+}
+
+/// The formulas of a page of text, each line with single spaces.
+pub fn formulas(derivation: &Derivation) -> String {
+    let text = derivation.print(Language::Text);
+    let formulas = text.split("\n\n").next().expect("formulas");
+    let squeezed = |line: &str| line.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
+    formulas.trim().lines().map(squeezed).collect::<Vec<_>>().join("\n")
 }

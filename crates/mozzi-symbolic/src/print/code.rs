@@ -80,8 +80,12 @@ pub(crate) fn function(derivation: &Derivation, language: Language) -> String {
     }
     let results: Vec<&str> = derivation.formulas.iter().map(|formula| formula.name).collect();
     let outputs: Vec<String> = results.iter().map(|name| format!("out_{name}")).collect();
+    for (k, denominator) in derivation.denominators() {
+        body.push(format!("{} = {}", delta(derivation.denominator_name(k)), printer.expression(denominator)));
+    }
     for (formula, output) in derivation.formulas.iter().zip(&outputs) {
-        body.push(format!("{output} = {}", array(formula, &printer, language)));
+        let below = derivation.denominator_number(formula).map_or(String::new(), |k| format!("/{}", delta(k)));
+        body.push(format!("{output} = {}{below}", array(formula, &printer, language)));
     }
     let about = format!("{name}: {} in this order", results.join(", "));
     let all = outputs.join(", ");
@@ -120,12 +124,16 @@ pub(crate) fn function(derivation: &Derivation, language: Language) -> String {
     }
 }
 
+/// The name of a denominator.
+pub(super) fn delta(number: Option<usize>) -> String {
+    format!("Delta{}", number.map_or(String::new(), |k| k.to_string()))
+}
+
 /// Atoms of the state that occur, also within sines and signs.
 fn used(derivation: &Derivation) -> BTreeSet<Id> {
     use crate::atom::{Angle, Atom};
     let mut found = BTreeSet::new();
-    derivation.names.iter().for_each(|expression| expression.atoms(&mut found));
-    derivation.formulas.iter().flat_map(|f| &f.entries).for_each(|expression| expression.atoms(&mut found));
+    derivation.expressions().for_each(|expression| expression.atoms(&mut found));
     let mut all = found.clone();
     for id in found {
         match derivation.table.atom(id) {

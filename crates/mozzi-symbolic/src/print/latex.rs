@@ -19,6 +19,10 @@ fn letter(letter: &str) -> &str {
         "φ" => r"\varphi",
         "μ" => r"\mu",
         "η" => r"\eta",
+        "Λ" => r"\Lambda",
+        "M⁻¹" => "M^{-1}",
+        "π_b" => r"{\pi_b}",
+        "Y_b" => "{Y_b}",
         other => other,
     }
 }
@@ -122,7 +126,7 @@ pub(crate) fn steps(steps: &Steps, is_markdown: bool) -> String {
         if let Some(title) = &step.title {
             page.push_str(&if is_markdown { format!("**{title}**\n\n") } else { format!("\n% {title}\n") });
         }
-        let formula = equation(&step.latex, &step.formula, &step.latex, &printer);
+        let formula = equation(&step.latex, &step.formula, &step.latex, &printer, None);
         page.push_str(&if is_markdown { format!("$$\n{formula}\n$$\n\n") } else { format!("\\[\n{formula}\n\\]\n") });
     }
     if is_markdown { page + &symbols(&steps.legend) } else { page.trim_start().to_string() }
@@ -139,12 +143,22 @@ pub(crate) fn formulas(derivation: &Derivation) -> Vec<String> {
     }
     for formula in &derivation.formulas {
         let Letter { letter: name, dots, frame } = derivation.letter(formula);
-        let name = match name.len() > 2 && name.is_ascii() {
+        let name = match name.len() > 2 && name.is_ascii() && letter(name) == name {
             true => format!(r"\mathrm{{{}}}", name.replace('_', r"\_")),
             false => dotted(name, dots),
         };
         let name = if frame.is_empty() { name } else { format!("{name}^{{{frame}}}") };
-        all.push(equation(&format!("{name}{}", arguments(derivation)), formula, &name, &printer));
+        let below = derivation.denominator_number(formula).map(delta);
+        all.push(equation(
+            &format!("{name}{}", arguments(derivation, formula)),
+            formula,
+            &name,
+            &printer,
+            below.as_deref(),
+        ));
+    }
+    for (k, denominator) in derivation.denominators() {
+        all.push(format!("{} = {}", delta(derivation.denominator_name(k)), printer.expression(denominator)));
     }
     all
 }
@@ -152,8 +166,13 @@ pub(crate) fn formulas(derivation: &Derivation) -> Vec<String> {
 /// Wider matrices are written entry by entry.
 const WIDE: usize = 700;
 
-fn equation(left: &str, formula: &Formula, name: &str, printer: &Printer<Latex>) -> String {
-    let written: Vec<String> = formula.entries.iter().map(|entry| printer.expression(entry)).collect();
+/// The symbol of a denominator.
+fn delta(number: Option<usize>) -> String {
+    format!(r"\Delta{}", number.map_or(String::new(), |k| format!("_{{{k}}}")))
+}
+
+fn equation(left: &str, formula: &Formula, name: &str, printer: &Printer<Latex>, over: Option<&str>) -> String {
+    let mut written: Vec<String> = formula.entries.iter().map(|entry| printer.expression(entry)).collect();
     let columns = match formula.shape[..] {
         [] => return format!("{left} = {}", written.first().map_or("0", String::as_str)),
         [_] => 1,
@@ -163,7 +182,11 @@ fn equation(left: &str, formula: &Formula, name: &str, printer: &Printer<Latex>)
     let longest = written.chunks(columns.max(1)).map(|row| row.iter().map(String::len).sum()).max().unwrap_or(0);
     if columns > 0 && longest <= WIDE {
         let rows: Vec<String> = written.chunks(columns).map(|row| row.join(" & ")).collect();
-        return format!("{left} = \\begin{{bmatrix}}\n{}\n\\end{{bmatrix}}", rows.join(" \\\\\n"));
+        let outside = over.map_or(String::new(), |delta| format!(r"\frac{{1}}{{{delta}}}"));
+        return format!("{left} = {outside}\\begin{{bmatrix}}\n{}\n\\end{{bmatrix}}", rows.join(" \\\\\n"));
+    }
+    if let Some(delta) = over {
+        written.iter_mut().for_each(|text| *text = format!(r"\frac{{{text}}}{{{delta}}}"));
     }
     let mut lines = Vec::new();
     for k in formula.distinct().filter(|&k| formula.entries[k] != Expression::ZERO) {
@@ -173,7 +196,7 @@ fn equation(left: &str, formula: &Formula, name: &str, printer: &Printer<Latex>)
     format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
 }
 
-fn arguments(derivation: &Derivation) -> String {
+fn arguments(derivation: &Derivation, formula: &Formula) -> String {
     let symbol = |name: &'static str| match name {
         "theta" => r"\theta",
         "dtheta" => r"\dot{\theta}",
@@ -181,6 +204,6 @@ fn arguments(derivation: &Derivation) -> String {
         "tau" => r"\tau",
         name => name,
     };
-    let symbols: Vec<&str> = derivation.inputs.iter().map(|(name, _)| symbol(name)).collect();
-    format!("({})", symbols.join(", "))
+    let symbols: Vec<&str> = formula.arguments(derivation).map(symbol).collect();
+    if symbols.is_empty() { String::new() } else { format!("({})", symbols.join(", ")) }
 }

@@ -213,8 +213,21 @@ impl Formula {
             "tau" => ("τ", 0),
             "phi" => ("φ", 0),
             "eta" => ("η", 0),
+            "Lambda" => ("Λ", 0),
+            "inverse" => ("M⁻¹", 0),
+            "pi_b" => ("π_b", 0),
             name => (name, 0),
         }
+    }
+
+    /// Those of a quantity's inputs that it depends on.
+    pub(crate) fn arguments<'d>(&self, derivation: &'d Derivation) -> impl Iterator<Item = &'static str> + use<'d> {
+        let most = match self.name {
+            "pi_b" => 0,
+            "Lambda" => 1,
+            _ => derivation.inputs.len(),
+        };
+        derivation.inputs.iter().take(most).map(|(name, _)| *name)
     }
 
     fn is_matrix(&self) -> bool {

@@ -1,5 +1,6 @@
 //! A Python module of SymPy expressions, with exact numbers.
 
+use super::code::delta;
 use super::{Printer, Style};
 use crate::atom::Name;
 use crate::derivation::Derivation;
@@ -71,6 +72,9 @@ pub(crate) fn module(derivation: &Derivation) -> String {
     for (k, name) in derivation.names.iter().enumerate() {
         lines.push(format!("{} = {}", Sympy.named(k), printer.expression(name)));
     }
+    for (k, denominator) in derivation.denominators() {
+        lines.push(format!("{} = {}", delta(derivation.denominator_name(k)), printer.expression(denominator)));
+    }
     for formula in &derivation.formulas {
         let name = match derivation.formulas.len() {
             1 => derivation.quantity,
@@ -78,6 +82,7 @@ pub(crate) fn module(derivation: &Derivation) -> String {
         };
         let entries: Vec<String> = formula.entries.iter().map(|entry| printer.expression(entry)).collect();
         let right = match formula.shape[..] {
+            [] if formula.denominator.is_some() => format!("({})", entries.concat()),
             [] => entries.concat(),
             [rows] => format!("Matrix({rows}, 1, [{}])", entries.join(", ")),
             [rows, columns] => format!("Matrix({rows}, {columns}, [\n    {},\n])", entries.join(",\n    ")),
@@ -87,7 +92,8 @@ pub(crate) fn module(derivation: &Derivation) -> String {
                 format!("ImmutableDenseNDimArray([{}], ({},))", entries.join(", "), shape.join(", "))
             }
         };
-        lines.push(format!("{name} = {right}"));
+        let below = derivation.denominator_number(formula).map_or(String::new(), |k| format!("/{}", delta(k)));
+        lines.push(format!("{name} = {right}{below}"));
     }
     lines.join("\n") + "\n"
 }

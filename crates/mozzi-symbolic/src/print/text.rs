@@ -108,7 +108,13 @@ pub(crate) fn page(derivation: &Derivation) -> String {
         let Letter { letter, dots, frame } = derivation.letter(formula);
         let frame = if frame.is_empty() { String::new() } else { format!("_{frame}") };
         let symbol = format!("{}{frame}", dotted(letter, dots));
-        lines.extend(equation(&printer, formula, &symbol, &format!("{symbol}{}", arguments(derivation))));
+        let below = derivation.denominator_number(formula).map(delta);
+        let left = format!("{symbol}{}", arguments(derivation, formula));
+        lines.extend(equation(&printer, formula, &symbol, &left, below.as_deref()));
+    }
+    for (k, denominator) in derivation.denominators() {
+        let name = delta(derivation.denominator_name(k));
+        lines.push(format!("{name} = {}", minus(&printer.expression(denominator))));
     }
     lines.extend(legend(&derivation.legend, &derivation.angles, &style));
     lines.join("\n") + "\n"
@@ -128,28 +134,40 @@ pub(crate) fn steps(steps: &Steps) -> String {
             formula.entries.iter().map(|entry| minus(&printer.expression(entry))).collect::<Vec<_>>().join(", ");
         match formula.shape[..] {
             [6] if inline.chars().count() < WIDE => lines.push(format!("{} = ({inline})", step.text)),
-            _ => lines.extend(equation(&printer, formula, &step.text, &step.text)),
+            _ => lines.extend(equation(&printer, formula, &step.text, &step.text, None)),
         }
     }
     lines.extend(legend(&steps.legend, &[], &style));
     lines.join("\n").trim_start().to_string() + "\n"
 }
 
-/// A formula as a matrix, or entry by entry.
-fn equation(printer: &Printer<Text>, formula: &Formula, symbol: &str, left: &str) -> Vec<String> {
-    let written: Vec<String> = formula.entries.iter().map(|entry| minus(&printer.expression(entry))).collect();
-    match matrix(formula, &written) {
-        Some(rows) => [vec![format!("{left} =")], rows].concat(),
-        None => entries(formula, symbol, left, &written),
+/// The symbol of a denominator.
+fn delta(number: Option<usize>) -> String {
+    format!("Δ{}", number.map_or(String::new(), below))
+}
+
+/// A formula as a matrix, or entry by entry, with the symbol of its denominator.
+fn equation(printer: &Printer<Text>, formula: &Formula, symbol: &str, left: &str, over: Option<&str>) -> Vec<String> {
+    let mut written: Vec<String> = formula.entries.iter().map(|entry| minus(&printer.expression(entry))).collect();
+    if let Some(rows) = matrix(formula, &written) {
+        let outside = over.map_or(String::new(), |delta| format!(" 1/{delta} ·"));
+        return [vec![format!("{left} ={outside}")], rows].concat();
     }
+    if let Some(delta) = over {
+        for (text, entry) in written.iter_mut().zip(&formula.entries) {
+            let is_sum = matches!(entry, Expression::Sum(_));
+            *text = if is_sum { format!("({text})/{delta}") } else { format!("{text}/{delta}") };
+        }
+    }
+    entries(formula, symbol, left, &written)
 }
 
 fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
-/// (θ, θ̇), for the inputs.
-pub(crate) fn arguments(derivation: &Derivation) -> String {
+/// (θ, θ̇), for the inputs of a formula.
+fn arguments(derivation: &Derivation, formula: &Formula) -> String {
     let symbol = |name: &'static str| match name {
         "theta" => "θ".to_string(),
         "dtheta" => dotted("θ", 1),
@@ -157,8 +175,8 @@ pub(crate) fn arguments(derivation: &Derivation) -> String {
         "tau" => "τ".to_string(),
         name => name.to_string(),
     };
-    let symbols: Vec<String> = derivation.inputs.iter().map(|(name, _)| symbol(name)).collect();
-    format!("({})", symbols.join(", "))
+    let symbols: Vec<String> = formula.arguments(derivation).map(symbol).collect();
+    if symbols.is_empty() { String::new() } else { format!("({})", symbols.join(", ")) }
 }
 
 /// Rows in brackets, if they fit a line.
