@@ -32,6 +32,28 @@ fn each_form_is_printed() {
     assert!(steps.contains("outward, link 2: link2") && steps.contains("𝓕₁") && steps.contains("τ₁ = "), "{steps}");
 }
 
+#[test]
+fn inverses_and_base_parameters_are_printed() {
+    let page = text(&["derive", "two_link_planar", "M_inv", "Lambda", "--equal", "link", "--task", "vx,vz"]);
+    for part in ["M⁻¹(θ) = 1/Δ ·", "Δ = m₂L₁²L₂²(m₁ + m₂ sin² θ₂)", "Λ(θ) = 1/Δ ·", "m₁ + m₂ sin² θ₂   0"]
+    {
+        assert!(page.contains(part), "{part} in {page}");
+    }
+    let space = text(&["derive", "two_link_planar", "Lambda", "--task", "wy,vx", "--task-frame", "space"]);
+    assert!(space.contains("sin² θ₁"), "{space}");
+    for name in ["base-parameters", "base_parameters"] {
+        let page = text(&["derive", "two_link_planar", name]);
+        assert!(page.contains("I₁yy + m₂L₁²") && page.contains("Y_b₁₁ = g cos θ₁"), "{page}");
+    }
+    let told = json(&["derive", "ur5", "base-parameters"]);
+    assert_eq!(told["derivations"][0]["quantity"], "base-parameters");
+    let list = text(&["derive", "two_link_planar", "--list"]);
+    for name in ["mass-matrix-inverse", "forward-dynamics", "task-space-dynamics", "base-parameters"] {
+        assert!(list.contains(name), "{list}");
+    }
+    assert!(!list.contains("forward-dynamics-vjp"), "{list}");
+}
+
 /// With named sub-expressions, fewer than 1.3 times the operations of the recorded program.
 #[test]
 fn an_arms_mass_matrix_is_as_short_as_its_program() {
@@ -62,7 +84,10 @@ fn edited_and_other_robots_are_derived_by_their_own_decimals() {
 #[test]
 fn what_cannot_be_derived_is_refused_by_name() {
     for (arguments, part) in [
-        (&["derive", "ur5", "aba"][..], "forward-dynamics divides by pivots"),
+        (&["derive", "ur5", "aba"][..], "forward-dynamics of 6 velocities is too long to read as one fraction"),
+        (&["derive", "ur5", "aba_derivatives"], "forward-dynamics-derivatives divides by pivots"),
+        (&["derive", "two_link_planar", "Lambda"], "such as vx,vz"),
+        (&["derive", "two_link_planar", "M", "--task", "vx"], "--task and --task-frame have an effect on"),
         (&["derive", "ur5", "M", "--symbols", "weights"], "found `weights`, expected some of masses"),
         (&["derive", "ur5", "--floating", "--steps"], "a floating base"),
         (&["derive", "two_link_planar", "--steps", "--as", "julia"], "--steps is printed as text, latex or markdown"),

@@ -4,21 +4,27 @@ use crate::failure::{self, Failure, Result};
 use crate::json;
 use crate::quantity::{hyphenated, of_end_effector, quantity};
 use crate::robot::RobotArguments;
+use crate::task::TaskArguments;
 use crate::text::table;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use mozzi::Model;
-use mozzi::quantities::{LIST, Query};
-use mozzi_symbolic::{Collect, Derivation, Equal, Error, Language, Options, Symbols, derive, steps};
+use mozzi::quantities::{LIST, Of, Query};
+use mozzi::{Model, Task};
+use mozzi_symbolic::{
+    Collect, Derivation, Equal, Error, Language, Options, Symbols, base_parameters, derive, is_fraction, steps,
+};
 use serde_json::{Value, json};
+use std::ffi::OsStr;
 
 #[derive(Args, Debug)]
 pub struct DeriveArguments {
     #[command(flatten)]
     robot: RobotArguments,
-    /// The quantities: M c g tau T J_b … [default: M c g]
-    #[arg(value_name = "QUANTITY", value_parser = quantity())]
-    quantity: Vec<Query<'static>>,
+    /// The quantities: M c g tau T J_b M_inv Lambda … base-parameters [default: M c g]
+    #[arg(value_name = "QUANTITY", value_parser = Names)]
+    quantity: Vec<Wanted>,
+    #[command(flatten)]
+    task: TaskArguments,
     /// Form of the equations
     #[arg(long = "as", value_name = "FORM", default_value = "text", value_parser = language())]
     language: Language,
@@ -41,6 +47,42 @@ pub struct DeriveArguments {
     /// List the quantities that can be derived
     #[arg(long)]
     list: bool,
+}
+
+/// A quantity, or the base parameters.
+#[derive(Clone, Copy, Debug)]
+enum Wanted {
+    Quantity(Query<'static>),
+    BaseParameters,
+}
+
+const BASE_PARAMETERS: (&str, &str) =
+    ("base-parameters", "π_b = Kπ and Y_b(θ, θ̇, θ̈): τ = Y_b π_b, with the fewest combinations of the parameters π");
+
+/// The names of quantities, and `base-parameters`.
+#[derive(Clone)]
+struct Names;
+
+impl TypedValueParser for Names {
+    type Value = Wanted;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> std::result::Result<Wanted, clap::Error> {
+        if value.to_string_lossy().replace('_', "-") == BASE_PARAMETERS.0 {
+            return Ok(Wanted::BaseParameters);
+        }
+        quantity().parse_ref(command, argument, value).map(Wanted::Quantity)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let (name, help) = BASE_PARAMETERS;
+        let own = PossibleValue::new(name).help(help);
+        Some(Box::new(quantity().possible_values()?.collect::<Vec<_>>().into_iter().chain([own])))
+    }
 }
 
 /// A value by its name and help.
@@ -119,13 +161,29 @@ pub fn run(arguments: &DeriveArguments) -> Result<String> {
     }
     let mut queries = arguments.quantity.clone();
     if queries.is_empty() {
-        queries = ["M", "c", "g"].into_iter().map(Query::named).collect::<Result<Vec<Query>, mozzi::Error>>()?;
+        let named = |name| Query::named(name).map(Wanted::Quantity);
+        queries = ["M", "c", "g"].into_iter().map(named).collect::<Result<Vec<Wanted>, mozzi::Error>>()?;
     }
+    let is_of_task = |wanted: &Wanted| matches!(wanted, Wanted::Quantity(query) if query.declaration().of == Of::Task);
+    if (arguments.task.task.is_some() || arguments.task.task_frame.is_some()) && !queries.iter().any(is_of_task) {
+        return Err(Failure::wrong("--task and --task-frame have an effect on task-space-dynamics only".to_string()));
+    }
+    let rows = arguments.task.rows()?;
     let mut text = arguments.robot.urdf_text();
     let mut derivations = Vec::new();
-    for query in queries {
-        let query = of_end_effector(query, &model)?;
-        derivations.push(by_decimals(&mut text, |text| derive(&model, text, query, &options))?);
+    for wanted in queries {
+        let query = match wanted {
+            Wanted::Quantity(query) if is_of_task(&wanted) => {
+                let task = Task::all(model.end_effector()?, arguments.task.coordinates());
+                Some(query.of_task(Task { rows: &rows, ..task }))
+            }
+            Wanted::Quantity(query) => Some(of_end_effector(query, &model)?),
+            Wanted::BaseParameters => None,
+        };
+        derivations.push(by_decimals(&mut text, |text| match query {
+            Some(query) => derive(&model, text, query, &options),
+            None => base_parameters(&model, text, &options),
+        })?);
     }
     if arguments.robot.json {
         return Ok(object(&model, &derivations));
@@ -151,11 +209,11 @@ fn recursion(arguments: &DeriveArguments, model: &Model, options: &Options) -> R
     page.ok_or_else(|| Failure::wrong("--steps is printed as text, latex or markdown".to_string()))
 }
 
-/// Quantities whose kernels divide by pivots are no polynomials.
+/// All quantities without those whose kernels divide, unless they are written as fractions.
 fn list() -> String {
-    let rows = LIST.iter().filter(|declared| !declared.divides);
-    let rows: Vec<Vec<String>> =
-        rows.map(|declared| vec![hyphenated(declared.name), declared.formula.into()]).collect();
+    let rows = LIST.iter().filter(|declared| !declared.divides || is_fraction(declared.name));
+    let rows = rows.map(|declared| vec![hyphenated(declared.name), declared.formula.into()]);
+    let rows: Vec<Vec<String>> = rows.chain([vec![BASE_PARAMETERS.0.into(), BASE_PARAMETERS.1.into()]]).collect();
     table(&rows, "ll").iter().map(|line| format!("{line}\n")).collect()
 }
 
