@@ -1,8 +1,9 @@
 //! Equations in symbols: `model.derive`.
 
 use crate::failure::of_model;
+use crate::methods::quantity as task;
 use crate::model::PyModel;
-use mozzi_symbolic::{Collect, Derivation, Equal, Error, Language, Options, Symbols, derive};
+use mozzi_symbolic::{Collect, Derivation, Equal, Error, Language, Options, Symbols, base_parameters, derive};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -46,7 +47,9 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// quantity : str
-    ///     Name of the quantity: 'mass_matrix', 'M', 'velocity_product', 'gravity_forces', 'inverse_dynamics', …
+    ///     Name of the quantity: 'mass_matrix', 'M', 'velocity_product', 'gravity_forces', 'inverse_dynamics', …;
+    ///     'mass_matrix_inverse', 'forward_dynamics', 'task_space_dynamics' up to four velocities; or 'base_parameters',
+    ///     for π_b and Y_b of τ = Y_b π_b.
     /// frame : str, optional
     ///     Its frame. Default: the end effector.
     /// symbols : str, optional
@@ -59,6 +62,10 @@ impl PyModel {
     ///     'shortest' form, or 'velocities': terms grouped by products of velocities.
     /// cse : bool, optional
     ///     Name sub-expressions that occur more than once.
+    /// rows : sequence of int, optional
+    ///     Rows of (ω, v) of a task. Default: all six.
+    /// coordinates : {'body', 'space'}
+    ///     Coordinates of a task's twist.
     /// urdf : str, optional
     ///     The URDF text from which exact decimals are read. Default: the text of an embedded robot; for other robots
     ///     the shortest decimals of the model's numbers.
@@ -70,7 +77,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the quantity divides (an inverse), or its entries are too long.
+    ///     If the quantity is not derived, its matrix is singular in every configuration, or its entries are too long.
     ///
     /// Examples
     /// --------
@@ -78,7 +85,10 @@ impl PyModel {
     /// >>> arm = mozzi.models.two_link_planar()
     /// >>> print(str(arm.derive("potential_energy", equal="link")).splitlines()[0])
     /// P(θ) = (m₁ + m₂)L₁g sin θ₁ + m₂L₂g sin(θ₁ + θ₂)
-    #[pyo3(signature = (quantity, *, frame=None, symbols=None, equal="none", collect="shortest", cse=false, urdf=None))]
+    #[pyo3(signature = (
+        quantity, *, frame=None, symbols=None, equal="none", collect="shortest", cse=false, rows=None,
+        coordinates="body", urdf=None
+    ))]
     #[allow(clippy::too_many_arguments)] // Python's keywords
     fn derive(
         &self,
@@ -89,9 +99,23 @@ impl PyModel {
         equal: &str,
         collect: &str,
         cse: bool,
+        rows: Option<&Bound<'_, PyAny>>,
+        coordinates: &str,
         urdf: Option<String>,
     ) -> PyResult<PyDerivation> {
-        let (query, model) = (self.query(quantity, frame)?, &self.robot().model);
+        let model = &self.robot().model;
+        let rows = rows.map(task::rows).transpose()?;
+        let mut query = None;
+        if quantity.replace('-', "_") != "base_parameters" {
+            let mut found = self.query(quantity, frame)?;
+            found.subject.coordinates = task::coordinates(Some(coordinates))?;
+            found.subject.rows = rows.as_deref().unwrap_or(found.subject.rows);
+            query = Some(found);
+        }
+        let derive = |text: Option<&str>, options: &Options| match query {
+            Some(query) => derive(model, text, query, options),
+            None => base_parameters(model, text, options),
+        };
         let default = if model.moving_links() <= 3 { Symbols::ALL } else { Symbols::NONE };
         let equals = [("none", Equal::Separate), ("link", Equal::OfLink), ("robot", Equal::OfRobot)];
         let collects = [("shortest", Collect::Shortest), ("velocities", Collect::Velocities)];
@@ -103,13 +127,13 @@ impl PyModel {
         };
         let own = mozzi_urdf::embedded::text(&model.description().name).map(str::to_string);
         let found = py.detach(|| match (&urdf, &own) {
-            (Some(text), _) => derive(model, Some(text), query, &options),
+            (Some(text), _) => derive(Some(text), &options),
             // a changed robot is not the file's any more
-            (None, Some(text)) => match derive(model, Some(text), query, &options) {
-                Err(Error::NotRead(_)) => derive(model, None, query, &options),
+            (None, Some(text)) => match derive(Some(text), &options) {
+                Err(Error::NotRead(_)) => derive(None, &options),
                 found => found,
             },
-            (None, None) => derive(model, None, query, &options),
+            (None, None) => derive(None, &options),
         });
         found.map(PyDerivation).map_err(|error| match error {
             Error::Model(error) => of_model(error),

@@ -37,10 +37,41 @@ def test_sympy_has_the_expressions():
     assert sympy.simplify(sympy.diff(energy, theta1) - g[0]) == 0
 
 
+def test_inverses_are_those_of_the_kernels(random):
+    arm = mozzi.models.two_link_planar()
+    theta, dtheta, tau = random.uniform(-2, 2, (3, arm.n))
+    scope = {}
+    exec(arm.derive("mass_matrix_inverse").python(), scope)
+    assert np.allclose(scope["mass_matrix_inverse"](theta), arm.mass_matrix_inverse(theta))
+    exec(arm.derive("forward_dynamics", cse=True).python(), scope)
+    assert np.allclose(scope["forward_dynamics"](theta, dtheta, tau), arm.forward_dynamics(theta, dtheta, tau))
+    task = arm.derive("Lambda", rows=[3, 5], equal="link")
+    assert "m₁ + m₂ sin² θ₂" in str(task)
+    exec(task.python(), scope)
+    expected = arm.task_space_dynamics(theta, dtheta, rows=[3, 5])
+    for found, kernel in zip(scope["task_space_dynamics"](theta, dtheta), expected):
+        assert np.allclose(found, kernel)
+
+
+def test_base_parameters_give_the_torques(random):
+    arm = mozzi.models.two_link_planar()
+    found = arm.derive("base_parameters")
+    assert "I₁yy + m₂L₁²" in str(found)
+    theta, dtheta, ddtheta = random.uniform(-2, 2, (3, arm.n))
+    scope = {}
+    exec(found.python(), scope)
+    pi_b, Y_b = scope["base_parameters"](theta, dtheta, ddtheta)
+    assert np.allclose(Y_b @ pi_b, arm.inverse_dynamics(theta, dtheta, ddtheta))
+
+
 def test_what_cannot_be_derived_is_refused():
     arm = mozzi.models.two_link_planar()
     with pytest.raises(ValueError, match="divides by pivots"):
-        arm.derive("forward_dynamics")
+        arm.derive("forward_dynamics_derivatives")
+    with pytest.raises(ValueError, match="6 velocities is too long"):
+        mozzi.models.ur5().derive("forward_dynamics")
+    with pytest.raises(ValueError, match="such as vx,vz"):
+        arm.derive("Lambda")
     with pytest.raises(ValueError, match="symbols has 'weights'"):
         arm.derive("mass_matrix", symbols="weights")
     with pytest.raises(ValueError, match="equal is 'all'"):

@@ -130,7 +130,8 @@ class Model:
     def derive(
         self, quantity: str, *, frame: str | None = None, symbols: str | None = None,
         equal: Literal["none", "link", "robot"] = "none", collect: Literal["shortest", "velocities"] = "shortest",
-        cse: bool = False, urdf: str | None = None
+        cse: bool = False, rows: Sequence[int] | None = None, coordinates: Literal["body", "space"] = "body",
+        urdf: str | None = None
     ) -> Derivation:
         """Derive a quantity in symbols: the equations as a textbook writes them."""
     # A list of numbers is one start. An array's axes are not in its type: it gives Trajectory, or Trajectories for

@@ -12,7 +12,7 @@ mod load;
 mod play;
 mod positions;
 mod properties;
-mod quantity;
+pub mod quantity;
 mod report;
 mod states;
 

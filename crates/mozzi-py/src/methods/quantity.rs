@@ -73,7 +73,8 @@ fn text<'a>(given: &'a Arguments, slot: Slot) -> PyResult<Option<&'a str>> {
     }
 }
 
-fn rows(given: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
+/// Row numbers of a task.
+pub fn rows(given: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
     let kind = given.get_type().name()?;
     given.extract().map_err(|error: PyErr| match error.is_instance_of::<PyException>(given.py()) {
         true => PyTypeError::new_err(format!("rows is a {kind}, expected a sequence of row numbers from 0 to 5")),
@@ -81,7 +82,8 @@ fn rows(given: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
     })
 }
 
-fn coordinates(name: Option<&str>) -> PyResult<TaskFrame> {
+/// Coordinates of a task by their name.
+pub fn coordinates(name: Option<&str>) -> PyResult<TaskFrame> {
     match name {
         Some("body") | None => Ok(TaskFrame::Body),
         Some("space") => Ok(TaskFrame::Space),
