@@ -147,21 +147,27 @@ fn prove(
     pi: &[(usize, Id)],
     p: usize,
 ) -> Result<(), Error> {
-    at_points(QUANTITY, kernel, inputs, |point, outputs| {
-        let value = value_at(point, names);
-        let of = |id: Id| value(&Expression::Atom(id));
-        let [combined, regressor] = [0, 1].map(|k: usize| formulas[k].entries.iter().map(&value).collect::<Vec<_>>());
-        for (i, row) in regressor.chunks(combined.len().max(1)).enumerate() {
-            let zero = Symbol::from(Rational::ZERO);
-            let found = row.iter().zip(&combined).fold(zero, |sum, (&y, &x)| sum + y * x);
-            let expected = pi.iter().fold(zero, |sum, &(k, id)| sum + outputs[0][i * p + k] * of(id));
-            if found != expected {
-                let what = format!("{} instead of {}", f64::from(found), f64::from(expected));
-                return Err(Error::NotProven { quantity: QUANTITY, entry: i, what });
+    at_points(
+        QUANTITY,
+        |number, inputs| kernel.outputs_at(number, inputs),
+        inputs,
+        |point, outputs| {
+            let value = value_at(point, names);
+            let of = |id: Id| value(&Expression::Atom(id));
+            let [combined, regressor] =
+                [0, 1].map(|k: usize| formulas[k].entries.iter().map(&value).collect::<Vec<_>>());
+            for (i, row) in regressor.chunks(combined.len().max(1)).enumerate() {
+                let zero = Symbol::from(Rational::ZERO);
+                let found = row.iter().zip(&combined).fold(zero, |sum, (&y, &x)| sum + y * x);
+                let expected = pi.iter().fold(zero, |sum, &(k, id)| sum + outputs[0][i * p + k] * of(id));
+                if found != expected {
+                    let what = format!("{} instead of {}", f64::from(found), f64::from(expected));
+                    return Err(Error::NotProven { quantity: QUANTITY, entry: i, what });
+                }
             }
-        }
-        Ok(())
-    })
+            Ok(())
+        },
+    )
 }
 
 /// Y_b π_b with the file's numbers is the model's inverse dynamics in `f64`.

@@ -3,6 +3,7 @@
 use crate::angles;
 use crate::atom::Class;
 use crate::collect::Grouping;
+use crate::constrained::{self, Parts};
 use crate::cse;
 use crate::derivation::{Derivation, Formula};
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL, MOST_LINKS};
@@ -91,8 +92,9 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
     }
     let kernel = Kernel::new(&query, &symbolic, tip)?;
     let are_fractions = options.symbols.are_all();
+    let robot = Robot { model, symbolic: &symbolic, are_fractions };
     let found: Vec<Fraction> = match declaration.divides {
-        true => Robot { model, symbolic: &symbolic, are_fractions }.fractions(&query, &inputs)?,
+        true => robot.fractions(&query, &inputs)?,
         false => {
             let outputs = kernel.outputs(&inputs);
             check_fault(quantity)?;
@@ -118,7 +120,11 @@ pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options
             })
             .collect()
     });
-    let prove = |formulas: &[Formula], names: &[Expression]| proof::prove(quantity, &kernel, &inputs, formulas, names);
+    let parts = (quantity == constrained::QUANTITY).then(|| Parts::new(&robot)).transpose()?;
+    let prove = |formulas: &[Formula], names: &[Expression]| match &parts {
+        Some(parts) => parts.prove(&inputs, formulas, names),
+        None => proof::prove(quantity, &kernel, &inputs, formulas, names),
+    };
     let derivation = finished(quantity, formulas, options, parameters, (&names_of_inputs, &inputs), prove)?;
     proof::compare(&derivation, &query, model, tip)?;
     Ok(derivation)

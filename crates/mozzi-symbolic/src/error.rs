@@ -76,7 +76,8 @@ impl fmt::Display for Error {
                     f,
                     "{quantity} {what}: it is no sum of products of sines and parameters. Derived are quantities \
                      without an inverse, such as mass-matrix, velocity-product, gravity-forces and inverse-dynamics, \
-                     and of those with one mass-matrix-inverse, forward-dynamics and task-space-dynamics"
+                     and of those with one mass-matrix-inverse, forward-dynamics, task-space-dynamics and \
+                     constrained-forward-dynamics"
                 )
             }
             Error::InverseTooLong { quantity, velocities } => {

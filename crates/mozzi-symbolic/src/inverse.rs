@@ -1,6 +1,7 @@
 //! Quantities that divide, as fractions: by the adjugate of [M Aᵀ; A 0], whose entries are polynomials. Without A it is
 //! that of M; with a task's Jacobian for A the lower right block of the inverse is −Λ.
 
+use crate::constrained::{self, Parts};
 use crate::error::{Error, MOST_VELOCITIES};
 use crate::fraction::Fraction;
 use crate::kernel::{Kernel, check_fault};
@@ -20,7 +21,8 @@ const FORWARD_DYNAMICS: [&str; 3] =
 
 /// True if a quantity that divides is derived as a fraction.
 pub fn is_fraction(quantity: &str) -> bool {
-    FORWARD_DYNAMICS.contains(&quantity) || ["mass_matrix_inverse", "task_space_dynamics"].contains(&quantity)
+    FORWARD_DYNAMICS.contains(&quantity)
+        || ["mass_matrix_inverse", "task_space_dynamics", constrained::QUANTITY].contains(&quantity)
 }
 
 /// Refuses quantities and robots whose inverses are not derived.
@@ -58,6 +60,7 @@ impl Robot<'_> {
                 let inverse = (0..n * n).map(|k| solved.minors.adjugate(k / n, k % n)).collect();
                 Ok(vec![solved.fraction(quantity, inverse, self.are_fractions)?])
             }
+            constrained::QUANTITY => Parts::new(self)?.fractions(inputs, self.are_fractions),
             "task_space_dynamics" => self.task(query, inputs, &M),
             _ => {
                 let still = vec![Symbol::zero(); n];
@@ -138,7 +141,7 @@ fn independent(rows: &[usize], row: impl Fn(usize) -> Vec<f64>) -> Vec<usize> {
 }
 
 /// [M Aᵀ; A 0] with its determinant.
-struct Solved {
+pub(crate) struct Solved {
     minors: Minors,
     /// Whether A has an odd number of rows: then the determinant is negative.
     is_odd: bool,
@@ -147,13 +150,19 @@ struct Solved {
 }
 
 impl Solved {
-    fn new(quantity: &'static str, n: usize, M: &[Symbol], A: &[Symbol]) -> Result<Self, Error> {
+    pub fn new(quantity: &'static str, n: usize, M: &[Symbol], A: &[Symbol]) -> Result<Self, Error> {
         let mut minors = Minors::saddle(n, M, A);
         let denominator = minors.determinant();
         check_fault(quantity)?;
         if denominator == Symbol::zero() {
-            let what = "the mass matrix is singular in every configuration: a joint moves no inertia".into();
-            return Err(Error::Singular { quantity, what });
+            let what = match A.is_empty() {
+                true => "the mass matrix is singular in every configuration: a joint moves no inertia",
+                false => {
+                    "A M⁻¹Aᵀ is singular in every configuration: rows of the constraints are dependent, so λ is not \
+                     unique. Expected are constraints without redundant rows"
+                }
+            };
+            return Err(Error::Singular { quantity, what: what.into() });
         }
         // factors of determinants: entries, and the whole
         let mut factors = vec![denominator.polynomial()];
@@ -167,7 +176,7 @@ impl Solved {
     }
 
     /// A row of the adjugate times a vector.
-    fn row(&mut self, i: usize, vector: &[Symbol]) -> Symbol {
+    pub fn row(&mut self, i: usize, vector: &[Symbol]) -> Symbol {
         let mut sum = Symbol::zero();
         for (k, &x) in vector.iter().enumerate().filter(|(_, x)| **x != Symbol::zero()) {
             sum += self.minors.adjugate(i, k) * x;
@@ -176,7 +185,12 @@ impl Solved {
     }
 
     /// Entries over the determinant.
-    fn fraction(&self, quantity: &'static str, entries: Vec<Symbol>, are_fractions: bool) -> Result<Fraction, Error> {
+    pub fn fraction(
+        &self,
+        quantity: &'static str,
+        entries: Vec<Symbol>,
+        are_fractions: bool,
+    ) -> Result<Fraction, Error> {
         check_fault(quantity)?;
         let signed = |x: &Symbol| if self.is_odd { (-*x).polynomial() } else { x.polynomial() };
         let numerators: Vec<Polynomial> = entries.iter().map(signed).collect();

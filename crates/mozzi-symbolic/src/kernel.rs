@@ -40,7 +40,7 @@ impl Kernel {
     }
 
     /// The outputs of the robot whose numbers these expressions give for its own.
-    pub fn outputs_at(&self, number: impl Fn(Symbol) -> Symbol, inputs: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
+    pub fn outputs_at(&self, number: &dyn Fn(Symbol) -> Symbol, inputs: &[Vec<Symbol>]) -> Vec<Vec<Symbol>> {
         let numbers = self.numbers.iter().map(|&x| number(x)).collect();
         self.outputs_with(&numbers, inputs)
     }

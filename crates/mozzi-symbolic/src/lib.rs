@@ -9,6 +9,7 @@ mod angles;
 mod atom;
 mod base_parameters;
 mod collect;
+mod constrained;
 mod cse;
 mod dependence;
 mod derivation;

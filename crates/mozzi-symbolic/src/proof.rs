@@ -48,10 +48,11 @@ pub(crate) fn value_at<'a>(point: &'a Point, names: &[Expression]) -> impl Fn(&E
     move |expression| expression.value(&atom, &plain, &values)
 }
 
-/// Calls a check with the kernel's outputs at random rational points.
+/// Calls a check with the outputs of kernels at random rational points: `outputs` gives them for the robot's numbers and
+/// the inputs there.
 pub(crate) fn at_points(
     quantity: &'static str,
-    kernel: &Kernel,
+    outputs: impl Fn(&dyn Fn(Symbol) -> Symbol, &[Vec<Symbol>]) -> Vec<Vec<Symbol>>,
     inputs: &[Vec<Symbol>],
     check: impl Fn(&Point, &[Vec<Symbol>]) -> Result<(), Error>,
 ) -> Result<(), Error> {
@@ -69,7 +70,7 @@ pub(crate) fn at_points(
         let inputs: Vec<Vec<Symbol>> =
             inputs.iter().map(|input| input.iter().map(|&x| if is_angle(x) { x } else { at(x) }).collect()).collect();
         set_point(Some(point.clone()));
-        let outputs = kernel.outputs_at(at, &inputs);
+        let outputs = outputs(&at, &inputs);
         set_point(None);
         let outputs: Vec<Vec<Symbol>> = outputs.iter().map(|output| output.iter().map(|&x| at(x)).collect()).collect();
         check_fault(quantity)?;
@@ -87,23 +88,28 @@ pub(crate) fn prove(
     formulas: &[Formula],
     names: &[Expression],
 ) -> Result<(), Error> {
-    at_points(quantity, kernel, inputs, |point, outputs| {
-        let value = value_at(point, names);
-        for (formula, expected) in formulas.iter().zip(outputs) {
-            let below = formula.denominator.as_ref().map_or(Symbol::one(), &value);
-            for (entry, (expression, &expected)) in formula.entries.iter().zip(expected).enumerate() {
-                // multiplied by the denominator, so that only the kernel divides
-                let (found, expected) = (value(expression), below * expected);
-                if found != expected {
-                    check_fault(quantity)?;
-                    let [found, expected] = [found, expected].map(|x| f64::from(x) / f64::from(below));
-                    let what = format!("{found} instead of {expected}");
-                    return Err(Error::NotProven { quantity, entry, what });
+    at_points(
+        quantity,
+        |number, inputs| kernel.outputs_at(number, inputs),
+        inputs,
+        |point, outputs| {
+            let value = value_at(point, names);
+            for (formula, expected) in formulas.iter().zip(outputs) {
+                let below = formula.denominator.as_ref().map_or(Symbol::one(), &value);
+                for (entry, (expression, &expected)) in formula.entries.iter().zip(expected).enumerate() {
+                    // multiplied by the denominator, so that only the kernel divides
+                    let (found, expected) = (value(expression), below * expected);
+                    if found != expected {
+                        check_fault(quantity)?;
+                        let [found, expected] = [found, expected].map(|x| f64::from(x) / f64::from(below));
+                        let what = format!("{found} instead of {expected}");
+                        return Err(Error::NotProven { quantity, entry, what });
+                    }
                 }
             }
-        }
-        Ok(())
-    })
+            Ok(())
+        },
+    )
 }
 
 impl Derivation {

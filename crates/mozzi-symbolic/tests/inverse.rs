@@ -3,8 +3,9 @@
 use crate::lagrange::python;
 use crate::robots::all;
 use crate::{attempt, embedded, formulas, model, of};
-use mozzi::quantities::{Query, TaskSpaceDynamics};
-use mozzi::{Task, TaskFrame};
+use mozzi::model::description::{Anchor, Constraint};
+use mozzi::quantities::{ConstrainedForwardDynamics, Query, TaskSpaceDynamics};
+use mozzi::{SE3, Task, TaskFrame};
 use mozzi_symbolic::{Collect, Derivation, Equal, Error, Language, Options, Rational, Symbols, derive};
 use std::fmt::Write;
 use std::process::Command;
@@ -105,6 +106,33 @@ fn sympy_multiplies_back() {
         let output = Command::new(&python).args(["-c", &script]).output().expect("Python runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
+}
+
+/// θ̈ and λ, of a pendulum that a rod holds and of a four-bar linkage, whose loop has a row that never moves.
+#[test]
+fn multipliers_of_loops_are_derived() {
+    let world = |p: [f64; 3]| Anchor::world(SE3::translation(p));
+    let rod = Constraint::distance("rod", world([0.1, 0.0, 0.2]), Anchor::frame("link2"), 0.5);
+    let pin =
+        Constraint::point("pin", world([0.7, 0.0, 0.0]), Anchor::frame("link3").at(SE3::translation([0.3, 0.0, 0.0])));
+    let rrr = all().into_iter().find(|(name, _)| *name == "RRR").expect("known").1;
+    let query = Query::from(ConstrainedForwardDynamics);
+    let numbers = Options { symbols: Symbols::NONE, ..BOOK };
+    for (text, constraint, options, zeros) in
+        [(embedded("two_link_planar"), rod, BOOK, 0), (&rrr, pin.clone(), numbers, 1)]
+    {
+        let model = model(text).with_constraints([constraint]).expect("frames");
+        let found = derive(&model, Some(text), query, &options).unwrap_or_else(|error| panic!("{error}"));
+        let (theta, still, tau) = (vec![0.4; model.n()], vec![0.3; model.n()], vec![0.7; model.n()]);
+        let values = found.evaluate(&[&theta, &still, &tau], Rational::to_f64, std::f64::consts::PI);
+        assert_eq!(values[1].iter().filter(|x| **x == 0.0).count(), zeros);
+        let page = found.print(Language::Text);
+        assert!(page.contains("θ̈₁ = ") && page.contains("λ"), "{page}");
+    }
+    let twice = [pin.clone(), Constraint { name: "again".into(), ..pin }];
+    let model = model(&rrr).with_constraints(twice).expect("frames");
+    let error = derive(&model, Some(&rrr), query, &numbers).expect_err("redundant").to_string();
+    assert!(error.contains("rows of the constraints are dependent"), "{error}");
 }
 
 #[test]

@@ -19,6 +19,7 @@ fn letter(letter: &str) -> &str {
         "φ" => r"\varphi",
         "μ" => r"\mu",
         "η" => r"\eta",
+        "λ" => r"\lambda",
         "Λ" => r"\Lambda",
         "M⁻¹" => "M^{-1}",
         "π_b" => r"{\pi_b}",

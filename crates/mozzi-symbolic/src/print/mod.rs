@@ -215,6 +215,7 @@ impl Formula {
             "eta" => ("η", 0),
             "Lambda" => ("Λ", 0),
             "inverse" => ("M⁻¹", 0),
+            "multipliers" => ("λ", 0),
             "pi_b" => ("π_b", 0),
             name => (name, 0),
         }
