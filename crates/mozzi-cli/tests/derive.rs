@@ -27,6 +27,7 @@ fn each_form_is_printed() {
         (Some("gravity-forces"), Some("m1"))
     );
     assert_eq!(found["operations"]["sines"], 2);
+    assert_eq!(text(&["derive", "two_link_planar", "M,g"]), text(&["derive", "two_link_planar", "M", "g"]));
     assert!(text(&["derive", "two_link_planar", "--list"]).contains("mass-matrix"));
     let steps = text(&["derive", "two_link_planar", "--steps", "--equal", "link"]);
     assert!(steps.contains("outward, link 2: link2") && steps.contains("𝓕₁") && steps.contains("τ₁ = "), "{steps}");

@@ -137,7 +137,7 @@ impl Table {
         }
         let product = match (self.atom(a).clone(), self.atom(b).clone()) {
             (Atom::Trig(a), Atom::Trig(b)) => self.product_to_sum(&a, &b),
-            (Atom::Root(a), Atom::Root(b)) => {
+            (Atom::Root(a), Atom::Root(b)) if a != b => {
                 let d = num_integer::gcd(a, b);
                 let root = Polynomial::atom(self.id(Atom::Root(a / d * (b / d))));
                 root.scaled(&Rational::new(d as i64, 1))
@@ -273,5 +273,19 @@ impl Table {
         }
         let rest = u64::try_from(rest).ok().filter(|rest| *rest < 1 << 62)?;
         Some(Polynomial::atom(self.id(Atom::Root(rest))).scaled(&Rational::new(outside, b)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_of_roots_are_in_the_shortest_form() {
+        let mut table = Table::default();
+        let mut root = |x: i64| table.root(&Rational::new(x, 1)).expect("a root");
+        let (two, six, three) = (root(2), root(6), root(3));
+        assert_eq!(table.times(&two, &two), Polynomial::constant(Rational::new(2, 1)));
+        assert_eq!(table.times(&two, &six), three.scaled(&Rational::new(2, 1)));
     }
 }

@@ -21,7 +21,7 @@ pub struct DeriveArguments {
     #[command(flatten)]
     robot: RobotArguments,
     /// The quantities: M c g tau T J_b M_inv Lambda … base-parameters [default: M c g]
-    #[arg(value_name = "QUANTITY", value_parser = Names)]
+    #[arg(value_name = "QUANTITY", value_parser = Names, value_delimiter = ',')]
     quantity: Vec<Wanted>,
     #[command(flatten)]
     task: TaskArguments,
