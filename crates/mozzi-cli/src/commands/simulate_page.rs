@@ -9,7 +9,7 @@ use crate::text::{Decimals, Page, about, page_width, rows_of, scalar, table, wid
 use mozzi::{Model, SE3, SO3};
 use mozzi_motion::controllers::Overload;
 use mozzi_report::shown_contacts;
-use mozzi_sim::{Closing, ContactEvent, Energy, OneSidedAccount, Stopped};
+use mozzi_sim::{Closing, ContactEvent, ContactForce, Energy, OneSidedAccount, Stopped};
 use mozzi_sim::{Sample, Trajectory};
 use serde_json::{Value, json};
 
@@ -291,14 +291,28 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
     events.chain(outcome.stops.iter().map(stop)).chain(outcome.overloads.iter().map(overload)).collect()
 }
 
+/// Forces of contacts are known to this part of the largest.
+const SOLVED: f64 = 1e-9;
+/// More forces are shown by their sum alone.
+const CARRYING: usize = 8;
+
 /// The contacts at the end, and their events.
 fn contact_lines(outcome: &Outcome) -> Vec<String> {
     let last = outcome.motion.last();
     let mut lines = Vec::new();
     if !outcome.contacts.is_empty() {
-        let [x, y, z] = last.total_contact_force().0.map(scalar);
+        let largest = last.contact_forces.iter().map(|force| force.f.norm()).fold(0.0, f64::max);
+        let clean = |x: f64| scalar(if x.abs() <= SOLVED * largest { 0.0 } else { x });
+        let [x, y, z] = last.total_contact_force().0.map(clean);
         let (carries, all) = (last.contact_forces.len(), outcome.contacts.len());
         lines.push(format!("contacts: {carries} of {all} carry at the end, force on the planes {x}, {y}, {z} N"));
+        if (2..=CARRYING).contains(&carries) {
+            let one = |force: &ContactForce| {
+                let [x, y, z] = force.f.0.map(clean);
+                format!("  `{}`: {x}, {y}, {z} N", outcome.contacts[force.pair])
+            };
+            lines.extend(last.contact_forces.iter().map(one));
+        }
     }
     let event = |e: &ContactEvent| format!("contact: `{}` {} at t = {} s", e.contact, e.change.name(), scalar(e.t));
     lines.extend(outcome.contact_events.iter().take(SHOWN).map(event));
