@@ -3,6 +3,7 @@
 
 mod contact;
 mod files;
+mod filled;
 pub(crate) mod hull;
 pub(crate) mod inertia;
 mod mesh;
@@ -15,6 +16,7 @@ mod vertices;
 pub use contact::{FRICTION, ShapeContacts, contact_points};
 pub(crate) use files::Own;
 pub use files::{NotLocated, locate};
+pub use filled::filled_mesh;
 pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
 pub use vertices::mesh_corners;
