@@ -63,7 +63,7 @@ fn a_python_that_gives_no_answer() {
     assert_eq!((of(1, "status"), of(1, "fault")), (Some("no answer".into()), Some("mozzi".into())), "{report}");
     says(
         &["compare", "ur5", "--python", &bare],
-        &["MuJoCo not installed: No module named x", "pip install pin mujoco"],
+        &["MuJoCo is not installed (No module named x); `pip install pin mujoco`", "--python names another Python"],
     );
     let refuses = fake(
         "refuses",

@@ -145,7 +145,11 @@ fn source(arguments: &CompareArguments, robot: &Description) -> Result<Source> {
 
 impl From<mozzi_report::compare::Error> for Failure {
     fn from(error: mozzi_report::compare::Error) -> Self {
-        let hint = if matches!(error, mozzi_report::compare::Error::Python { .. }) { " with --python" } else { "" };
+        let hint = match error {
+            mozzi_report::compare::Error::Python { .. } => " with --python",
+            mozzi_report::compare::Error::NoLibrary { .. } => "; --python names another Python",
+            _ => "",
+        };
         Failure::Wrong(format!("{error}{hint}"))
     }
 }

@@ -92,13 +92,26 @@ fn somebody(python: &Path, answers: &[Answer]) -> Result<()> {
     if !answers.iter().all(silent) {
         return Ok(());
     }
-    let reason = |answer: &Answer| match &answer.robot {
-        Err(unavailable) => format!("{} {}", answer.library, vocabulary::unavailable(unavailable, answer.library)),
-        Ok(_) => String::new(),
-    };
-    let mut reasons: Vec<String> = answers.iter().map(reason).collect();
-    if answers.iter().any(|answer| matches!(answer.robot, Err(Unavailable::NotInstalled(_)))) {
-        reasons.push("`pip install pin mujoco` gives it both".into());
+    let (mut libraries, mut messages, mut reasons) = (Vec::new(), Vec::new(), Vec::new());
+    for answer in answers {
+        match &answer.robot {
+            Err(Unavailable::NotInstalled(message)) => {
+                libraries.push(answer.library);
+                messages.push(message.as_str());
+            }
+            Err(unavailable) => {
+                reasons.push(format!("{} {}", answer.library, vocabulary::unavailable(unavailable, answer.library)));
+            }
+            Ok(_) => {}
+        }
+    }
+    // each once: NumPy may be missing for both
+    libraries.dedup();
+    messages.dedup();
+    if !libraries.is_empty() {
+        let (verb, both) = if libraries.len() == 1 { ("is", "") } else { ("are", " installs both") };
+        let (libraries, messages) = (libraries.join(" and "), messages.join(", "));
+        reasons.push(format!("{libraries} {verb} not installed ({messages}); `pip install pin mujoco`{both}"));
     }
     let reasons = reasons.join("; ");
     Err(Error::NoLibrary { python: python.to_path_buf(), reasons })
