@@ -86,20 +86,22 @@ fn two_files(arguments: &CompareArguments, other: &str) -> Result<String> {
     let file = |name: &str| -> Result<RobotFile> {
         let (model, inertial_axes) = arguments.policy.model_and_axes(name)?;
         workload::at_most(MOST, &model, "of one that is compared")?;
-        // shapes only suggest reasons: a file without readable shapes has none
-        let shapes = match name {
-            "-" => Vec::new(),
-            name => {
-                geometry_with(name, &arguments.policy.settings().xacro).map_or_else(|_| Vec::new(), |all| all.shapes)
-            }
-        };
+        // those of other formats are not read
+        let has_shapes = name != "-" && !robot_json::is_json(name) && !is_sdf(name);
+        let shapes = has_shapes.then(|| geometry_with(name, &arguments.policy.settings().xacro).ok());
+        let shapes = shapes.flatten().map(|all| all.shapes);
         let shown = short(name).filter(|_| is_short).unwrap_or_else(|| input::name(name).to_string());
-        Ok(RobotFile { name: shown, model, inertial_axes, shapes })
+        let path = (name != "-").then(|| Path::new(name).to_path_buf());
+        Ok(RobotFile { name: shown, model, inertial_axes, shapes, path })
     };
     let comparison =
         compare_files(&file(&arguments.model)?, &file(other)?, arguments.states.into(), arguments.seed, tolerance)?;
     let text = if arguments.json { json::print(&comparison.json()) } else { comparison.text() };
     if comparison.agrees() { Ok(text) } else { Err(Failure::Answered(text)) }
+}
+
+fn is_sdf(path: &str) -> bool {
+    std::fs::read(path).is_ok_and(|text| mozzi_urdf::sdf::is_sdf(&String::from_utf8_lossy(&text)))
 }
 
 impl CompareArguments {

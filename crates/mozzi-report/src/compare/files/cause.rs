@@ -37,11 +37,15 @@ pub struct Cause {
     pub change: Change,
     /// Effect of the change alone: "gravity torque of `joint6` by up to 0.97 N m".
     pub effect: Option<String>,
+    /// The size of the difference apart from its forces: relative lengths and angles of a place, infinite of a change
+    /// without forces, 0 of others.
+    pub size: f64,
 }
 
 impl Cause {
     pub fn new(kind: &'static str, name: &str, sentence: String, has_reason: bool, change: Change) -> Self {
-        Cause { kind, name: name.to_string(), sentence, has_reason, change, effect: None }
+        let size = if matches!(change, Change::NoForce) { f64::INFINITY } else { 0.0 };
+        Cause { kind, name: name.to_string(), sentence, has_reason, change, effect: None, size }
     }
 }
 

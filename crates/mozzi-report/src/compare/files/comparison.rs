@@ -1,10 +1,11 @@
 //! The comparison of two files.
 
 use super::cause::Cause;
-use super::forces::{Gaps, States, agree};
+use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
-use super::{RobotFile, joints, merged, report};
+use super::{RobotFile, constraints, joints, merged, report, shapes};
 use crate::compare::Result;
+use crate::compare::constants::home;
 use serde_json::Value;
 
 /// The result of comparing two files of a robot.
@@ -16,6 +17,8 @@ pub struct FilesComparison {
     pub(super) tolerance: f64,
     /// The moving joints that both have.
     pub(super) common: usize,
+    /// The velocities whose forces are compared: those of these joints and of a base that floats in both.
+    pub(super) rows: usize,
     pub(super) renamed: Vec<(String, String)>,
     pub(super) only: [Vec<String>; 2],
     /// A sentence about the base, if it is floating in one file only.
@@ -25,6 +28,8 @@ pub struct FilesComparison {
     pub(super) after: Gaps,
     pub(super) units: [String; 3],
     pub(super) causes: Vec<Cause>,
+    /// Differences without an effect on the verdict.
+    pub(super) notes: Vec<String>,
 }
 
 /// Compares two files of a robot at random states within the first one's limits. `tolerance` is the largest accepted
@@ -50,9 +55,11 @@ pub fn compare_files(
     let (mine, theirs) = (states_of.numbers(&matched.a)?, states_of.numbers(&matched.b)?);
     let before = states_of.gaps(&mine, &theirs);
     let mut causes = joints::causes(&matched, &b.name)?;
-    causes.extend(merged::causes(&matched, [a, b])?);
     let mut accounted = matched.a.clone();
     causes.iter().for_each(|cause| cause.change.apply(&mut accounted));
+    let (of_bodies, mut notes) = merged::causes(&matched, &home(&accounted).or_else(|_| home(&matched.a))?, [a, b])?;
+    of_bodies.iter().for_each(|cause| cause.change.apply(&mut accounted));
+    causes.extend(of_bodies);
     let after = match states_of.numbers(&accounted) {
         Ok(accounted) => states_of.gaps(&accounted, &theirs),
         Err(_) => before.clone(), // a robot that cannot be built explains nothing
@@ -68,6 +75,13 @@ pub fn compare_files(
         renamed.map_or_else(|| name.to_string(), |(_, there)| there.clone())
     };
     causes.extend(joints::silent(&one, &two, &there, &b.name));
+    causes.extend(constraints::causes([&one, &two], &there, [&a.name, &b.name])?);
+    let is_link = |robot: &mozzi::Description, name: &str| robot.links.iter().any(|link| link.name == name);
+    notes.extend(shapes::notes([a, b], &|link| is_link(&one, link) && is_link(&two, link)));
+    let rows = states_of.names().len();
+    if rows == 0 && !(matched.only_a.is_empty() && matched.only_b.is_empty()) {
+        (causes, notes) = (Vec::new(), Vec::new()); // nothing was compared
+    }
     let common =
         matched.a.joints.iter().filter(|joint| joint.kind != mozzi::model::description::JointKind::Fixed).count();
     let units = [0, 1, 2].map(|k| before[k].joints.first().map_or("N m", |joint| states_of.unit(joint)).to_string());
@@ -77,6 +91,7 @@ pub fn compare_files(
         seed,
         tolerance,
         common,
+        rows,
         renamed: matched.renamed,
         only: [matched.only_a, matched.only_b],
         base,
@@ -84,25 +99,64 @@ pub fn compare_files(
         after,
         units,
         causes,
+        notes,
     })
 }
 
 impl FilesComparison {
-    /// Whether M and all forces agree to the tolerance.
-    pub fn forces_agree(&self) -> bool {
-        agree(&self.before, self.tolerance) && self.base.is_none()
+    /// Whether there was something to compare: a joint that moves in both, or a base that floats in both; or neither has
+    /// a joint.
+    pub fn is_compared(&self) -> bool {
+        self.rows > 0 || self.has_same_joints()
     }
 
-    /// Whether the files describe the same robot: the same moving joints, limits and couplings, and the same forces to
-    /// the tolerance.
+    fn has_same_joints(&self) -> bool {
+        self.only.iter().all(Vec::is_empty)
+    }
+
+    /// Whether M and all forces agree to the tolerance.
+    pub fn forces_agree(&self) -> bool {
+        agree(&self.before, self.tolerance) && self.base.is_none() && self.is_compared()
+    }
+
+    /// Whether the files describe the same robot: the same moving joints, limits, couplings and constraints, and the
+    /// same places and forces to the tolerance.
     pub fn agrees(&self) -> bool {
-        let is_silent = |cause: &Cause| !matches!(cause.change, super::cause::Change::NoForce);
-        self.forces_agree() && self.only.iter().all(Vec::is_empty) && self.causes.iter().all(is_silent)
+        let is_small = |cause: &Cause| cause.size <= self.tolerance;
+        self.forces_agree() && self.has_same_joints() && self.causes.iter().all(is_small)
     }
 
     /// Whether the causes make the difference vanish, and each has a reason.
     pub fn is_explained(&self) -> bool {
-        agree(&self.after, self.tolerance.max(1e-9)) && self.causes.iter().all(|cause| cause.has_reason)
+        self.is_compared() && self.is_accounted_for() && self.causes.iter().all(|cause| cause.has_reason)
+    }
+
+    fn is_accounted_for(&self) -> bool {
+        agree(&self.after, self.tolerance.max(1e-9))
+    }
+
+    /// "limits and damping", if robots of the same masses and geometry differ in these alone.
+    pub(super) fn differing_kinds(&self) -> Option<String> {
+        const KINDS: [(&str, &str); 7] = [
+            ("limits", "limits"),
+            ("mimic", "mimic joints"),
+            ("constraint", "constraints"),
+            ("damping", "damping"),
+            ("friction", "friction"),
+            ("stiffness", "stiffness"),
+            ("spring", "springs"),
+        ];
+        let is_rest_same = self.is_compared() && self.has_same_joints() && self.base.is_none();
+        if !is_rest_same || !agree_at_rest(&self.before, self.tolerance) || !self.is_accounted_for() {
+            return None;
+        }
+        let is_of = |cause: &Cause| KINDS.iter().any(|(kind, _)| *kind == cause.kind);
+        let mut words: Vec<&str> = (KINDS.iter())
+            .filter(|(kind, _)| self.causes.iter().any(|cause| cause.kind == *kind))
+            .map(|(_, words)| *words)
+            .collect();
+        let last = words.pop().filter(|_| self.causes.iter().all(is_of))?;
+        Some(if words.is_empty() { last.to_string() } else { format!("{} and {last}", words.join(", ")) })
     }
 
     /// The causes in words, in the order of the report.

@@ -110,8 +110,15 @@ impl States {
 
 /// True if no difference is larger than this part of the quantity's largest number.
 pub fn agree(gaps: &Gaps, tolerance: f64) -> bool {
+    agree_at_rest(gaps, tolerance) && within(&gaps[2], tolerance, 0.0)
+}
+
+/// As [`agree`], of M and gravity alone.
+pub fn agree_at_rest(gaps: &Gaps, tolerance: f64) -> bool {
     // gravity that is 0 in both up to rounding is compared with the torques
-    let most = gaps[2].scale;
-    let within = |gap: &Gap, scale: f64| gap.most <= tolerance * gap.scale.max(scale);
-    within(&gaps[0], 0.0) && within(&gaps[1], most) && within(&gaps[2], 0.0)
+    within(&gaps[0], tolerance, 0.0) && within(&gaps[1], tolerance, gaps[2].scale)
+}
+
+fn within(gap: &Gap, tolerance: f64, scale: f64) -> bool {
+    gap.most <= tolerance * gap.scale.max(scale)
 }

@@ -120,6 +120,12 @@ fn forward(
             vector(a.c)
         ));
     }
+    if center && alike(scaled(a.I, b.m / a.m), b.I) {
+        let (m, n, ratio) = (shown(a.m), shown(b.m), shown(b.m / a.m));
+        return Some(format!(
+            "{other} has `{link}` of another density: {n} kg instead of {m} kg, mass and moments by {ratio}"
+        ));
+    }
     if center && alike(a.I, b.I) {
         let (m, n) = (shown(a.m), shown(b.m));
         return Some(format!("{other} has another mass of `{link}`: {n} kg instead of {m} kg, with {one}'s moments"));

@@ -11,13 +11,18 @@ use crate::compare::constants::{home, same_body};
 use mozzi::{Description, SE3, SO3, SpatialInertia, Sym3, Vec3};
 use std::collections::BTreeMap;
 
-/// The causes in the inertias of all bodies that move.
-pub fn causes(matched: &Matched, files: [&RobotFile; 2]) -> Result<Vec<Cause>> {
+/// The causes in the inertias of all bodies that move, and notes on bodies that only divide it among their links in
+/// another way. `home_a` has the first robot's links with the causes of its joints accounted for.
+pub fn causes(
+    matched: &Matched,
+    home_a: &BTreeMap<String, SE3>,
+    files: [&RobotFile; 2],
+) -> Result<(Vec<Cause>, Vec<String>)> {
     let robots = [&matched.a, &matched.b];
-    let (home_a, home_b) = (home(robots[0])?, home(robots[1])?);
+    let home_b = home(robots[1])?;
     let (model_a, model_b) = (robots[0].clone().build()?, robots[1].clone().build()?);
     let (bodies_a, bodies_b) = (model_a.folded_links(), model_b.folded_links());
-    let mut causes = Vec::new();
+    let (mut causes, mut notes) = (Vec::new(), Vec::new());
     for body in &bodies_a {
         let Some(there) = bodies_b.iter().find(|there| there.joint == body.joint) else { continue };
         if body.joint.is_none() && !(model_a.is_floating() && model_b.is_floating()) {
@@ -28,18 +33,19 @@ pub fn causes(matched: &Matched, files: [&RobotFile; 2]) -> Result<Vec<Cause>> {
         let only_b: Vec<&str> = others.iter().copied().filter(|name| !names.contains(name)).collect();
         let is_light =
             |robot: &Description, list: &[&str]| list.iter().all(|name| inertia(robot, name) == SpatialInertia::zero());
+        let whole = |robot: &Description, names: &[&str], home: &BTreeMap<String, SE3>| {
+            names.iter().fold(SpatialInertia::zero(), |sum, name| sum + inertia(robot, name).transformed(home[*name]))
+        };
+        let (mine, theirs) = (whole(robots[0], &names, home_a), whole(robots[1], &others, &home_b));
+        if same_body(&mine, &theirs) {
+            notes.extend(merged_links(&names, robots, files));
+            continue; // merged as it should be
+        }
         if is_light(robots[0], &only_a) && is_light(robots[1], &only_b) {
             for name in names.iter().filter(|name| others.contains(name)) {
                 causes.extend(of_link(name, robots, [home_a[*name], home_b[*name]], files, &only_a));
             }
             continue;
-        }
-        let whole = |robot: &Description, names: &[&str], home: &BTreeMap<String, SE3>| {
-            names.iter().fold(SpatialInertia::zero(), |sum, name| sum + inertia(robot, name).transformed(home[*name]))
-        };
-        let (mine, theirs) = (whole(robots[0], &names, &home_a), whole(robots[1], &others, &home_b));
-        if same_body(&mine, &theirs) {
-            continue; // merged as it should be
         }
         let first = names[0];
         let into = home_a[first].inverse();
@@ -66,11 +72,25 @@ pub fn causes(matched: &Matched, files: [&RobotFile; 2]) -> Result<Vec<Cause>> {
         change.extend(names.iter().skip(1).map(|name| (name.to_string(), SpatialInertia::zero())));
         causes.push(Cause::new("inertia", first, sentence, has_reason, Change::Inertia(change)));
     }
-    Ok(causes)
+    Ok((causes, notes))
 }
 
 fn inertia(robot: &Description, link: &str) -> SpatialInertia {
     robot.links.iter().find(|each| each.name == link).map_or_else(SpatialInertia::zero, |each| each.inertia)
+}
+
+/// Links that both have, of whose inertia one robot has made a part of another link's.
+fn merged_links(names: &[&str], robots: [&Description; 2], files: [&RobotFile; 2]) -> Option<String> {
+    let massless = |robot: &Description, name: &str| {
+        robot.links.iter().any(|link| link.name == name && link.inertia == SpatialInertia::zero())
+    };
+    [(0, 1), (1, 0)].into_iter().find_map(|(here, there)| {
+        let merges = |name: &&&str| !massless(robots[here], name) && massless(robots[there], name);
+        let list: Vec<String> = names.iter().skip(1).filter(merges).map(|name| format!("`{name}`")).collect();
+        let sentence =
+            || format!("{} merges {} into `{}`: the same body", files[there].name, list.join(", "), names[0]);
+        (!list.is_empty()).then(sentence)
+    })
 }
 
 /// A link that both have.
@@ -82,15 +102,15 @@ fn of_link(
     alone: &[&str],
 ) -> Option<Cause> {
     let (a, b) = (inertia(robots[0], name), inertia(robots[1], name));
-    let moved = b.transformed(homes[1]).transformed(homes[0].inverse());
-    if same_body(&a, &b) || same_body(&a, &moved) {
+    // in the first robot's link frame
+    let into = homes[0].inverse() * homes[1];
+    let is_there = into.p.norm() <= 1e-9 * (1.0 + homes[0].p.norm()) && into.R.log().norm() <= 1e-9;
+    let other = if is_there { b } else { b.transformed(into) };
+    if same_body(&a, &b) || same_body(&a, &other) {
         return None;
     }
-    // link frames that are elsewhere are joints' causes; the inertia is then compared in them
-    let is_there = homes[0] == homes[1] || near(homes[0].p, homes[1].p);
-    let other = if is_there && homes[0] != homes[1] { moved } else { b };
     let axes = [0, 1].map(|k| files[k].inertial_axes.get(name).copied());
-    let solid = solid::of_link(&files[0].shapes, name).or_else(|| solid::of_link(&files[1].shapes, name));
+    let solid = solid::of_link(files[0], name).or_else(|| solid::of_link(files[1], name));
     let names = [files[0].name.as_str(), files[1].name.as_str()];
     let twice = alone.is_empty().then(|| counted_twice(name, robots[0], a, other)).flatten();
     let why = twice.map(|child| format!("{} counts the mass of `{child}` twice, also in `{name}`", names[1]));
@@ -117,7 +137,7 @@ struct Part {
     name: String,
     body: Body,
     /// In its own frame, and the axes in which the file gives it.
-    own: Sym3,
+    own: Body,
     T: SE3,
     axes: Option<SO3>,
 }
@@ -126,12 +146,12 @@ impl Part {
     fn of(name: &str, robot: &Description, file: &RobotFile, T: SE3) -> Self {
         let G = inertia(robot, name);
         let axes = file.inertial_axes.get(name).copied();
-        Part { name: name.to_string(), body: Body::of(G.transformed(T)), own: Body::of(G).I, T, axes }
+        Part { name: name.to_string(), body: Body::of(G.transformed(T)), own: Body::of(G), T, axes }
     }
 
     fn without(&self, inertial: bool, joint: bool) -> Sym3 {
         let axes = self.axes.unwrap_or_else(SO3::identity);
-        let I = if inertial { self.own.congruence(axes.inverse().matrix()) } else { self.own };
+        let I = if inertial { self.own.I.congruence(axes.inverse().matrix()) } else { self.own.I };
         if joint { I } else { I.congruence(self.T.R.matrix()) }
     }
 }
@@ -141,17 +161,24 @@ fn merged([one, other]: [&str; 2], first: &str, parts: &[Part], missing: &[bool]
     let list = parts.iter().zip(missing).filter(|(_, gone)| **gone).map(|(part, _)| format!("`{}`", part.name));
     let list = list.collect::<Vec<_>>().join(", ");
     // the sum of all links, with another inertia of the missing ones
-    let total = |moment: &dyn Fn(&Part) -> Sym3, shift: &dyn Fn(bool) -> bool, counts: &dyn Fn(bool) -> f64| {
+    type Make<'m, T> = &'m dyn Fn(&Part) -> T;
+    let about = |center: Make<Vec3>, moment: Make<Sym3>, shift: &dyn Fn(bool) -> bool, counts: &dyn Fn(bool) -> f64| {
+        let place = |part: &Part, gone: bool| if gone { center(part) } else { part.body.c };
         let m: f64 = parts.iter().zip(missing).map(|(part, gone)| counts(*gone) * part.body.m).sum();
-        let mc =
-            parts.iter().zip(missing).fold(Vec3::zero(), |mc, (p, gone)| mc + p.body.c * (counts(*gone) * p.body.m));
+        let mc = parts
+            .iter()
+            .zip(missing)
+            .fold(Vec3::zero(), |mc, (p, gone)| mc + place(p, *gone) * (counts(*gone) * p.body.m));
         let c = if m > 0.0 { mc * (1.0 / m) } else { Vec3::zero() };
         let I = parts.iter().zip(missing).fold(Sym3::zero(), |I, (part, gone)| {
             let own = if *gone { moment(part) } else { part.body.I };
-            let away = if shift(*gone) { steiner(part.body.m, part.body.c - c) } else { Sym3::zero() };
+            let away = if shift(*gone) { steiner(part.body.m, place(part, *gone) - c) } else { Sym3::zero() };
             sum(I, sum(own, away, 1.0), counts(*gone))
         });
         Body { m, c, I }
+    };
+    let total = |moment: Make<Sym3>, shift: &dyn Fn(bool) -> bool, counts: &dyn Fn(bool) -> f64| {
+        about(&|part| part.body.c, moment, shift, counts)
     };
     let is_b = |body: Body| (body.m - b.m).abs() <= 2e-6 * b.m.abs() && near(body.c, b.c) && alike(body.I, b.I);
     let (all, one_each) = (|_: bool| true, |_: bool| 1.0);
@@ -165,6 +192,10 @@ fn merged([one, other]: [&str; 2], first: &str, parts: &[Part], missing: &[bool]
     }
     if is_b(total(&|part| part.without(true, true), &all, &one_each)) {
         return says("without the rotations of its inertial and its fixed joint");
+    }
+    let unturned = |part: &Part| part.T.p + part.own.c;
+    if is_b(about(&unturned, &true_moment, &all, &one_each)) {
+        return says("without rotating its centre of mass by its fixed joint");
     }
     if is_b(total(&true_moment, &|_| false, &one_each)) || is_b(total(&true_moment, &|gone| !gone, &one_each)) {
         return says("without the parallel-axis term");

@@ -7,13 +7,16 @@
 
 mod cause;
 mod comparison;
+mod constraints;
 mod forces;
 mod inertia;
 mod joints;
 mod matching;
 mod merged;
 mod number;
+mod place;
 mod report;
+mod shapes;
 mod solid;
 
 pub use comparison::{FilesComparison, compare_files};
@@ -21,6 +24,7 @@ pub use comparison::{FilesComparison, compare_files};
 use mozzi::{Model, SO3};
 use mozzi_urdf::geometry::Shape;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// One of the two robots.
 #[derive(Clone, Debug)]
@@ -32,6 +36,8 @@ pub struct RobotFile {
     /// The axes in which the file gives each link's inertia, in the link's: see
     /// [`Loaded::inertial_axes`](mozzi_urdf::Loaded::inertial_axes).
     pub inertial_axes: BTreeMap<String, SO3>,
-    /// The shapes of its links.
-    pub shapes: Vec<Shape>,
+    /// The shapes of its links; none if those of its format are not read.
+    pub shapes: Option<Vec<Shape>>,
+    /// Its place, from which meshes are found; without it they are not read.
+    pub path: Option<PathBuf>,
 }

@@ -7,9 +7,19 @@ pub fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
 }
 
+/// How a number's unit contains an angle.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Angle {
+    None,
+    /// rad, rad/s …
+    Of,
+    /// N m/rad, N m s/rad.
+    Per,
+}
+
 /// The reason of a difference between two numbers: a unit, a decimal point or a sign, in words that follow the number's
 /// name.
-pub fn reason(a: f64, b: f64) -> Option<String> {
+pub fn reason(a: f64, b: f64, angle: Angle) -> Option<String> {
     if b == 0.0 {
         return Some("is dropped".to_string());
     }
@@ -20,7 +30,15 @@ pub fn reason(a: f64, b: f64) -> Option<String> {
     if same(ratio, -1.0) {
         return Some("has the other sign".to_string());
     }
-    for (factor, what) in [(180.0 / PI, "is in degrees"), (PI / 180.0, "is in radians, not degrees")] {
+    let (to_degrees, to_radians) = (180.0 / PI, PI / 180.0);
+    let words = match angle {
+        Angle::None => None,
+        Angle::Of => Some([(to_degrees, "is in degrees"), (to_radians, "is in radians, not degrees")]),
+        Angle::Per => {
+            Some([(to_radians, "is per degree, not per radian"), (to_degrees, "is converted as if it were per degree")])
+        }
+    };
+    for (factor, what) in words.into_iter().flatten() {
         if (ratio / factor - 1.0).abs() < 1e-6 {
             return Some(what.to_string());
         }

@@ -30,19 +30,42 @@ fn digits(x: f64) -> String {
     format!("{x:.2e}").parse::<f64>().map_or_else(|_| x.to_string(), shown)
 }
 
+fn verdict(it: &FilesComparison) -> String {
+    let alone: usize = it.only.iter().map(Vec::len).sum();
+    if !it.is_compared() {
+        return "no joint in common: nothing was compared".to_string();
+    }
+    if it.common == 0 && alone > 0 {
+        return "no joint in common; only the floating bases are compared".to_string();
+    }
+    if it.agrees() {
+        return if it.causes.is_empty() { "the same robot" } else { "the same forces to the tolerance" }.to_string();
+    }
+    if let Some(kinds) = it.differing_kinds() {
+        let verb = if kinds == "damping" || kinds == "friction" || kinds == "stiffness" { "differs" } else { "differ" };
+        return format!("the same masses and geometry; {kinds} {verb}");
+    }
+    if alone == 0 && it.forces_agree() {
+        return "the same forces of another robot; the causes below name the differences".to_string();
+    }
+    match (alone, it.is_explained()) {
+        (0, true) => "another robot; the causes below explain it".to_string(),
+        (0, false) => "another robot; not all of it is explained".to_string(),
+        (1, _) => "another robot: one joint moves in one file only".to_string(),
+        _ => format!("another robot: {alone} joints move in one file only"),
+    }
+}
+
 pub fn text(it: &FilesComparison) -> String {
     let mut page = Page::default();
     let [a, b] = &it.names;
-    let verdict = match (it.agrees(), it.is_explained()) {
-        (true, _) => "the same robot",
-        (_, true) => "another robot; the causes below explain it",
-        _ => "another robot; not all of it is explained",
-    };
-    page.line(format!("{a} and {b}: {verdict}"));
-    page.line(format!(
-        "{} moving joints in both, {} random states of seed {}, tolerance {:e} of the largest number",
-        it.common, it.states, it.seed, it.tolerance
-    ));
+    page.line(format!("{a} and {b}: {}", verdict(it)));
+    if it.is_compared() {
+        page.line(format!(
+            "{} moving joints in both, {} random states of seed {}, tolerance {:e} of the largest number",
+            it.common, it.states, it.seed, it.tolerance
+        ));
+    }
     for (here, there) in &it.renamed {
         page.line(format!("  `{here}` is `{there}` in {b}, known by its place"));
     }
@@ -58,8 +81,9 @@ pub fn text(it: &FilesComparison) -> String {
     let labels = ["M", "gravity torque", "torque"];
     let is_there =
         |gap: &Gap| gap.most > it.tolerance * gap.scale.max(if it.forces_agree() { f64::INFINITY } else { 0.0 });
+    let of_common = if it.only.iter().all(Vec::is_empty) { "" } else { " of the joints in both" };
     if it.forces_agree() {
-        page.line("  M, gravity torques and torques agree");
+        page.line(format!("  M, gravity torques and torques{of_common} agree"));
     }
     for ((gap, what), unit) in it.before.iter().zip(labels).zip(&it.units).filter(|((gap, _), _)| is_there(gap)) {
         let place = gap.joints.join(", ");
@@ -78,10 +102,13 @@ pub fn text(it: &FilesComparison) -> String {
     if it.causes.len() > SHOWN {
         page.line(format!("  and {} more; --json has all", it.causes.len() - SHOWN));
     }
-    if !it.forces_agree() {
+    for note in &it.notes {
+        page.line(format!("  note: {note}"));
+    }
+    if !it.forces_agree() && it.is_compared() {
         let part = |gap: &Gap| if gap.scale > 0.0 { gap.most / gap.scale } else { 0.0 };
-        let worst = it.after.iter().map(part).fold(0.0, f64::max);
-        page.line(format!("  with all of these accounted for, the forces agree to {worst:.0e}"));
+        let worst = it.after.iter().map(part).fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most });
+        page.line(format!("  with all of these accounted for, the forces{of_common} agree to {worst:.0e}"));
     }
     page.end()
 }
@@ -94,6 +121,7 @@ pub fn json(it: &FilesComparison) -> Value {
     json!({
         "files": it.names,
         "agrees": it.agrees(),
+        "compared": it.is_compared(),
         "explained": it.is_explained(),
         "tolerance": it.tolerance,
         "states": it.states,
@@ -108,5 +136,6 @@ pub fn json(it: &FilesComparison) -> Value {
             "kind": cause.kind, "name": cause.name, "message": cause.sentence, "has_reason": cause.has_reason,
             "effect": cause.effect,
         })).collect::<Value>(),
+        "notes": it.notes,
     })
 }

@@ -1,25 +1,7 @@
 //! Fourteen ways in which a robot's physics got lost in public, each as a pair of small files: the comparison names the
 //! cause of each.
-#![allow(clippy::unwrap_used, missing_docs)]
-
-use mozzi_report::compare::files::{FilesComparison, RobotFile, compare_files};
-use mozzi_urdf::geometry::geometry;
-use std::path::{Path, PathBuf};
-
-fn path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults").join(name)
-}
-
-fn robot(name: &str) -> RobotFile {
-    let path = path(name);
-    let loaded = mozzi_urdf::load(&path).unwrap_or_else(|error| panic!("{error}"));
-    let (inertial_axes, shapes) = (loaded.inertial_axes.clone(), geometry(&path.to_string_lossy()).unwrap().shapes);
-    RobotFile { name: name.to_string(), model: loaded.build().unwrap(), inertial_axes, shapes }
-}
-
-fn compare(a: &str, b: &str) -> FilesComparison {
-    compare_files(&robot(a), &robot(b), 20, 1, 1e-9).unwrap()
-}
+use crate::{compare, robot};
+use mozzi_report::compare::files::{RobotFile, compare_files};
 
 /// Before, after, and words of each cause.
 const FAULTS: [(&str, &str, &[&str]); 25] = [

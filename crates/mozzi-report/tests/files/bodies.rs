@@ -1,0 +1,51 @@
+//! Inertias that are divided among links in another way, or of another density.
+
+use crate::{compare_description, flat, has_cause};
+use mozzi::{Description, SpatialInertia};
+
+fn place(robot: &Description, link: &str) -> usize {
+    robot.links.iter().position(|each| each.name == link).unwrap()
+}
+
+/// Adds `tool` to `lower`; `center` may move its centre of mass in the frame of `lower`.
+fn merge(robot: &mut Description, center: impl Fn(mozzi::SE3, SpatialInertia) -> SpatialInertia) {
+    let (lower, tool) = (place(robot, "lower"), place(robot, "tool"));
+    let T = robot.joints.iter().find(|joint| joint.name == "mount").unwrap().origin;
+    robot.links[lower].inertia = robot.links[lower].inertia + center(T, robot.links[tool].inertia);
+    robot.links[tool].inertia = SpatialInertia::zero();
+}
+
+#[test]
+fn a_merged_link_whose_frame_is_kept() {
+    let comparison = compare_description(|robot| merge(robot, |T, G| G.transformed(T)));
+    let text = flat(&comparison);
+    assert!(comparison.agrees() && comparison.causes().next().is_none(), "{text}");
+    assert!(text.contains("note: b.urdf merges `tool` into `lower`: the same body"), "{text}");
+    assert_eq!(comparison.json()["notes"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn a_centre_of_mass_that_is_not_rotated() {
+    let comparison = compare_description(|robot| {
+        merge(robot, |T, G| {
+            let I = G.about_center_of_mass().congruence(T.R.matrix());
+            SpatialInertia::new(G.mass, T.p + G.center_of_mass(), I)
+        });
+        robot.links.retain(|link| link.name != "tool");
+        robot.joints.retain(|joint| joint.name != "mount");
+    });
+    has_cause(&comparison, "merges `tool` into `lower` without rotating its centre of mass by its fixed joint", true);
+}
+
+#[test]
+fn another_density() {
+    let comparison = compare_description(|robot| {
+        let upper = place(robot, "upper");
+        robot.links[upper].inertia = robot.links[upper].inertia * 2.7;
+    });
+    has_cause(
+        &comparison,
+        "b.urdf has `upper` of another density: 5.4 kg instead of 2 kg, mass and moments by 2.7",
+        true,
+    );
+}
