@@ -104,8 +104,8 @@ pub fn compare_files(
 }
 
 impl FilesComparison {
-    /// Whether there was something to compare: a joint that moves in both, or a base that floats in both; or neither has
-    /// a joint.
+    /// Whether there was something to compare: a joint that moves in both, or a base that floats in both. True if
+    /// neither has a joint.
     pub fn is_compared(&self) -> bool {
         self.rows > 0 || self.has_same_joints()
     }

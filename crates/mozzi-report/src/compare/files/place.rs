@@ -129,7 +129,7 @@ fn size(a: &Joint, b: &Joint) -> f64 {
     axes.fold(away.max(turned), f64::max)
 }
 
-/// What differs of a joint, and whether it is a reason; `origins` is true if its origin is the same.
+/// The difference of a joint in words, and whether it has a reason; `origins` is true if its origin is the same.
 fn sentence(a: &Joint, b: &Joint, origins: bool, other: &str) -> (String, bool) {
     let (name, type_a, type_b) = (&a.name, a.kind.name(), b.kind.name());
     if a.parent != b.parent || a.child != b.child {
