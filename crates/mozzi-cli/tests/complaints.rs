@@ -269,7 +269,7 @@ fn flags_without_effect_are_wrong_usage() {
         ("trajectory", &way, &["--ramp-fraction", "0.1", "--profile", "cubic"], "--profile trapezoidal"),
         ("simulate", &state, &["--restitution", "0.5"], "--ground or --contacts"),
         ("simulate", &state, &["--tolerance", "1e-6", "--method", "rk4"], "--method dopri"),
-        ("simulate", &state, &["--extrapolate", "hold"], "--torque or --follow or --tip-wrench"),
+        ("simulate", &state, &["--extrapolate", "hold"], "--torque or --tip-wrench"),
         ("simulate", &state, &["--page-rows", "9"], "--report"),
     ] {
         let (code, message) = complaint(&[&[command, "ur5"], others, flag].concat());

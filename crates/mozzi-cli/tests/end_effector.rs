@@ -1,6 +1,6 @@
 //! The end effector that nobody names.
 
-use crate::common::{complaint, file, folder, json, text};
+use crate::common::{complaint, file, folder, json, text, words};
 use std::path::Path;
 
 /// A URDF of an arm with `ee_link` and `tool0` at one origin, and an optional further leaf.
@@ -39,7 +39,7 @@ fn frames_in_one_place_are_no_ambiguity() {
                  <child link='camera'/></joint>";
     let branched = two_ended_arm(&folder, "branched.urdf", "0 0 0", other);
     assert_eq!(json(&["compute", &branched, "fk"])["frame"], "tool0");
-    let page = text(&["info", "panda"]);
+    let page = words(&text(&["info", "panda"]));
     let expected = "end effector: panda_hand_tcp (by its name; other ends: `panda_leftfinger`, `panda_rightfinger`)";
     assert!(page.contains(expected), "{page}");
     // two tools, and ends without a tool's name

@@ -2,6 +2,8 @@
 
 use crate::common::{complaint, file, folder, json, mozzi, numbers, text};
 
+const Q: &str = "--q=0,-1.2,1.5,0.3,1.1,0";
+
 fn said(arguments: &[&str]) -> String {
     let output = mozzi(arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
@@ -57,7 +59,7 @@ fn symbols_of_printed_results_are_names() {
         ("P", "potential-energy"),
         ("Mdot", "mass-matrix-rate"),
     ] {
-        assert_eq!(text(&["compute", "ur5", guess]), text(&["compute", "ur5", name]), "{guess}");
+        assert_eq!(text(&["compute", "ur5", guess, Q]), text(&["compute", "ur5", name, Q]), "{guess}");
     }
     let (_, message) = complaint(&["compute", "ur5", "h_foo"]);
     assert!(message.contains("there is no quantity `h_foo`"), "{message}");

@@ -312,7 +312,7 @@ fn what_is_wrong_is_named() {
     assert!(code == 1 && text.contains("0 threads could not be started: expected at least one"), "{text}");
     let (code, text) = complaint(&["compute", "ur5", "mass-matrix", "--in", &all, "--out", "-", "--json"]);
     assert!(code == 1 && text.contains("--json and --out - both write to standard output"), "{text}");
-    let (code, text) = complaint(&["compute", "panda", "body-jacobian", "--in", &all, "--out", &out]);
+    let (code, text) = complaint(&["compute", "anymal", "body-jacobian", "--in", &all, "--out", &out]);
     assert!(code == 1 && text.contains("end effector"), "{text}");
     let output = mozzi(&["compute", "ur5", "mass-matrix", "--in", &whole, "--out", &out]);
     assert!(output.status.success(), "whole numbers are numbers");
