@@ -198,9 +198,7 @@ fn parse_in(folder: Option<&Path>, file_name: &str, text: &[u8], settings: &Sett
     let Placed { mut diagnostics, errors, is_cut } = Placed::of(findings, &sources, dialect);
     diagnostics.extend(notes);
     let is_unused = |found: &Diagnostic| found.consequence() == Consequence::Unused;
-    // a site's new name does not change the robot, so it is no error
-    let is_refused =
-        |found: &Diagnostic| policy == Policy::Strict && !is_unused(found) && !found.code().ends_with("::renamed_site");
+    let is_refused = |found: &Diagnostic| policy == Policy::Strict && !is_unused(found);
     // errors stay in the order of the file
     diagnostics.sort_by_key(|found| (found.severity() == Severity::Warning).then(|| found.consequence()));
     let refused = errors > 0 || diagnostics.iter().any(is_refused);

@@ -134,26 +134,28 @@ fn attributes_without_effect_are_listed() {
 fn what_is_right_and_has_no_place_is_listed() {
     let text = "<mujoco><asset/><worldbody><light/><body name='b'><joint name='j'/><camera/><camera/><geom size='1'/><site name='b'/>\
                 </body></worldbody><actuator><motor joint='j'/></actuator><sensor/><keyframe><key ctrl='1'/></keyframe><visual/></mujoco>";
-    for policy in [Policy::Default, Policy::Strict] {
-        let robot = parse_with("a.xml", text, policy).expect("a model");
-        let is_known = |code: &str| ["mozzi::mjcf::ignored_attribute", "mozzi::mjcf::ignored_element"].contains(&code);
-        assert!(robot.unused.iter().all(|unused| is_known(unused.code())));
-        let [renamed] = robot.warnings.as_slice() else { panic!("{:?}", robot.warnings) };
-        assert_eq!(renamed.message(), "site `b`: a body has this name, too; the site is called `b:site` here");
-        let said: Vec<&str> = robot.unused.iter().map(|unused| unused.message()).collect();
-        assert_eq!(
-            said,
-            [
-                "mujoco: <asset> is ignored",
-                "worldbody: <light> is ignored",
-                "body `b`: <camera> is ignored (here, and 1 more)",
-                "mujoco: <actuator> is ignored",
-                "mujoco: <sensor> is ignored",
-                "key: `ctrl` is ignored",
-                "mujoco: <visual> is ignored",
-            ]
-        );
-    }
+    let robot = parse("a.xml", text).expect("a model");
+    let is_known = |code: &str| ["mozzi::mjcf::ignored_attribute", "mozzi::mjcf::ignored_element"].contains(&code);
+    assert!(robot.unused.iter().all(|unused| is_known(unused.code())));
+    let [renamed] = robot.warnings.as_slice() else { panic!("{:?}", robot.warnings) };
+    assert_eq!(renamed.message(), "site `b`: a body has this name, too; the site is called `b:site` here");
+    let said: Vec<&str> = robot.unused.iter().map(|unused| unused.message()).collect();
+    assert_eq!(
+        said,
+        [
+            "mujoco: <asset> is ignored",
+            "worldbody: <light> is ignored",
+            "body `b`: <camera> is ignored (here, and 1 more)",
+            "mujoco: <actuator> is ignored",
+            "mujoco: <sensor> is ignored",
+            "key: `ctrl` is ignored",
+            "mujoco: <visual> is ignored",
+        ]
+    );
+    // the new name is a warning as any other
+    let strict = parse_with("a.xml", text, Policy::Strict).expect_err("a warning");
+    let errors: Vec<&str> = strict.errors().map(|error| error.code()).collect();
+    assert_eq!(errors, ["mozzi::mjcf::renamed_site"]);
     assert!(
         parse("a.xml", format!("<mujoco><worldbody>{MASS}</worldbody></mujoco>")).expect("a world").warnings.is_empty()
     );
