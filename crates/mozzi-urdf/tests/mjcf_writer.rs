@@ -130,3 +130,47 @@ fn named_states_are_keys() {
     assert_eq!(losses, ["the choice of the state in which the robot starts, `stands`"]);
     assert!(after.states.iter().any(|state| state.name == "stands"));
 }
+
+#[test]
+fn bodies_that_mujoco_refuses_are_named() {
+    // a link of each kind, its moments and products, on a hinge; mass 0 is a link without inertial
+    let robot = |links: &[(&str, f64, [f64; 6], &str)]| {
+        let each = |(name, mass, [xx, xy, xz, yy, yz, zz], kind): &(&str, f64, [f64; 6], &str)| {
+            let inertial = format!(
+                "<inertial><mass value=\"{mass}\"/><inertia ixx=\"{xx}\" ixy=\"{xy}\" ixz=\"{xz}\" iyy=\"{yy}\" \
+                 iyz=\"{yz}\" izz=\"{zz}\"/></inertial>"
+            );
+            format!(
+                "<link name=\"{name}\">{}</link><joint name=\"j_{name}\" type=\"{kind}\"><parent link=\"base\"/><child \
+                 link=\"{name}\"/><axis xyz=\"0 1 0\"/></joint>",
+                if *mass > 0.0 { inertial } else { String::new() }
+            )
+        };
+        format!("<robot name=\"r\"><link name=\"base\"/>{}</robot>", links.iter().map(each).collect::<String>())
+    };
+    let remarks = |text: &str| mjcf::write(&parse("r.urdf", text).unwrap().description).unwrap().remarks;
+    let (ball, point, moves) = ([1.0, 0.0, 0.0, 1.0, 0.0, 1.0], [0.0; 6], "continuous");
+    assert!(remarks(&robot(&[("ball", 1.0, ball, moves), ("fixed", 1.0, point, "fixed")])).is_empty());
+    let all = robot(&[
+        ("ball", 1.0, ball, moves),
+        ("point", 1.0, point, moves),
+        ("empty", 0.0, point, moves),
+        ("bar", 1.0, [1.0, 1.0, 0.0, 1.0, 0.0, 2.0], "fixed"),
+        ("plate", 1.0, [1.0, 0.0, 0.0, 1.0, 0.0, 2.0], moves),
+        ("broken", 1.0, [1.0, 0.0, 0.0, 1.0, 0.0, 2.0001], "fixed"),
+    ]);
+    let expected = [
+        "MuJoCo refuses moving bodies whose mass or a moment is below 1e-15: `point`, `empty` (2)",
+        "MuJoCo refuses inertias with products and a principal moment below 1e-14: `bar`",
+        "MuJoCo refuses inertias with a moment above the sum of the others (`balanceinertia` changes them): `broken`",
+    ];
+    assert_eq!(remarks(&all), expected);
+    // what is fixed to a body counts
+    let carried = robot(&[("point", 1.0, point, moves)]).replace(
+        "</robot>",
+        "<link name=\"load\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" \
+         izz=\"1\"/></inertial></link><joint name=\"f\" type=\"fixed\"><parent link=\"point\"/><child link=\"load\"/>\
+         </joint></robot>",
+    );
+    assert!(remarks(&carried).is_empty(), "{:?}", remarks(&carried));
+}

@@ -1,10 +1,9 @@
 //! The properties of a robot that MJCF cannot express.
 
-use super::{Plan, equality, keyframe, travel};
+use super::{Plan, equality, is_full, keyframe, travel};
 use crate::written::names_of;
-use mozzi::Base;
-use mozzi::Description;
-use mozzi::model::description::{FreeJoint, JointKind};
+use mozzi::model::description::{FreeJoint, JointKind, Link};
+use mozzi::{Base, Description, SpatialInertia};
 
 pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
     let mut losses = Vec::new();
@@ -52,12 +51,36 @@ pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
     losses
 }
 
-/// Links without mass that move, and are not merged.
-pub(super) fn refused_by_mujoco(d: &Description, plan: &Plan) -> Option<String> {
-    let empty: Vec<&str> = (d.joints.iter())
+/// MuJoCo's mjMINVAL, of a mass and of moments.
+const LEAST: f64 = 1e-15;
+/// MuJoCo's mjEPS, of the moments of a full inertia.
+const LEAST_OF_FULL: f64 = 1e-14;
+
+/// The bodies that MuJoCo's compiler refuses, by reason.
+pub(super) fn refused_by_mujoco(d: &Description, plan: &Plan) -> Vec<String> {
+    let moments = |link: &Link| link.inertia.verdict().principal_moments;
+    let has_inertia = |link: &Link| link.inertia.mass >= LEAST && moments(link)[0] >= LEAST;
+    let moving = (d.joints.iter())
         .filter(|joint| joint.kind != JointKind::Fixed && plan.next(joint).is_none())
-        .filter(|joint| d.links.iter().any(|link| link.name == joint.child && link.inertia.mass == 0.0))
         .map(|joint| joint.child.as_str())
-        .collect();
-    names_of("MuJoCo refuses links without mass that move:", &empty)
+        .chain(plan.base.filter(|_| d.base == Base::Floating).map(|base| base.name.as_str()));
+    // one of the bodies fixed to each other is enough
+    let is_weightless = |link: &&str| !plan.fixed_to(link).into_iter().any(has_inertia);
+    let empty: Vec<&str> = moving.filter(is_weightless).collect();
+    let of = |is_refused: &dyn Fn(&Link) -> bool| -> Vec<&str> {
+        let written = d.links.iter().filter(|link| link.inertia != SpatialInertia::zero());
+        written.filter(|link| is_refused(link)).map(|link| link.name.as_str()).collect()
+    };
+    let is_full = |link: &Link| is_full(link.inertia.about_center_of_mass());
+    let flat = of(&|link| is_full(link) && moments(link)[0] < LEAST_OF_FULL);
+    let unbalanced = of(&|link| {
+        let [a, b, c] = moments(link);
+        a + b < c && (!is_full(link) || a >= LEAST_OF_FULL)
+    });
+    let reasons = [
+        ("moving bodies whose mass or a moment is below 1e-15:", empty),
+        ("inertias with products and a principal moment below 1e-14:", flat),
+        ("inertias with a moment above the sum of the others (`balanceinertia` changes them):", unbalanced),
+    ];
+    reasons.into_iter().filter_map(|(what, names)| names_of(&format!("MuJoCo refuses {what}"), &names)).collect()
 }

@@ -8,6 +8,7 @@ use crate::text::scan::MOST_DEPTH;
 use crate::urdf::write::{escaped, triple};
 use crate::written::{NotWritten, Written};
 use equality::Site;
+use mozzi::linalg::Sym3;
 use mozzi::model::description::{Joint, JointKind, Link, NamedState};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::collections::BTreeMap;
@@ -49,11 +50,7 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
     let mut text = String::new();
     // writing to a String cannot fail
     let _ = mujoco(&mut text, &plan);
-    Ok(Written {
-        text,
-        losses: losses::of(d, &plan),
-        remarks: losses::refused_by_mujoco(d, &plan).into_iter().collect(),
-    })
+    Ok(Written { text, losses: losses::of(d, &plan), remarks: losses::refused_by_mujoco(d, &plan) })
 }
 
 /// Bodies inside each other that are read again: `<mujoco>`, `<worldbody>` and a body's own elements are around them.
@@ -100,6 +97,17 @@ impl<'d> Plan<'d> {
             open.extend(self.below.get(link).into_iter().flatten().map(|joint| (joint.child.as_str(), depth + 1)));
         }
         deepest
+    }
+
+    /// A link, and those that fixed joints attach to it.
+    fn fixed_to(&self, link: &str) -> Vec<&'d Link> {
+        let (mut open, mut found) = (vec![link], Vec::new());
+        while let Some(link) = open.pop() {
+            found.extend(self.links.get(link));
+            let fixed = self.below.get(link).into_iter().flatten().filter(|joint| joint.kind == JointKind::Fixed);
+            open.extend(fixed.map(|joint| joint.child.as_str()));
+        }
+        found
     }
 
     /// The joint after a link without mass and frames, which MuJoCo could not have between two joints.
@@ -159,15 +167,20 @@ fn body(text: &mut String, plan: &Plan, link: &Link, depth: usize) -> fmt::Resul
     let G = link.inertia;
     if G != SpatialInertia::zero() {
         let (c, I) = (G.center_of_mass(), G.about_center_of_mass());
-        // MuJoCo refuses moments of 0 only as a full inertia
-        let inertia = match [I.xy, I.xz, I.yz] {
-            [0.0, 0.0, 0.0] => format!("diaginertia=\"{}\"", numbers(&[I.xx, I.yy, I.zz])),
-            products => format!("fullinertia=\"{}\"", numbers(&[[I.xx, I.yy, I.zz], products].concat())),
+        // in a body that does not move MuJoCo refuses moments of 0 only as a full inertia
+        let inertia = match is_full(I) {
+            false => format!("diaginertia=\"{}\"", numbers(&[I.xx, I.yy, I.zz])),
+            true => format!("fullinertia=\"{}\"", numbers(&[I.xx, I.yy, I.zz, I.xy, I.xz, I.yz])),
         };
         writeln!(text, "{indent}  <inertial pos=\"{}\" mass=\"{:?}\" {inertia}/>", triple(c), G.mass)?;
     }
     inside(text, plan, &link.name, depth + 1)?;
     writeln!(text, "{indent}</body>")
+}
+
+/// True for an inertia that is written with its products.
+fn is_full(I: Sym3) -> bool {
+    [I.xy, I.xz, I.yz] != [0.0; 3]
 }
 
 /// The sites and the child bodies of a link.
