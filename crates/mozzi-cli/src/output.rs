@@ -3,11 +3,12 @@
 
 use crate::failure::{Failure, Result};
 use crate::interrupt::Writing;
+use crate::terminal;
 use mozzi_report::whole_file::WholeFile;
 use mozzi_urdf::files;
 use std::collections::BTreeSet;
 use std::fs::File;
-use std::io;
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -61,6 +62,17 @@ impl Output {
         self.whole.finish().map_err(|error| failed(&self.file, &error))?;
         written().extend(Path::new(&self.file).canonicalize());
         Ok(())
+    }
+}
+
+/// Writes a file's text to standard output as it is; to a terminal without control characters.
+pub fn to_stdout(text: &str) -> Result<()> {
+    let mut to = io::stdout().lock();
+    let text = if to.is_terminal() { terminal::result(text) } else { text.to_string() };
+    match to.write_all(text.as_bytes()).and_then(|()| to.flush()) {
+        // the reader has closed the pipe
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(failed("standard output", &error)),
+        _ => Ok(()),
     }
 }
 

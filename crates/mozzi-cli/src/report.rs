@@ -13,7 +13,7 @@ use mozzi_sim::Trajectory;
 use mozzi_sim::{ContactEvent, Contacts, Input};
 use mozzi_urdf::{embedded, expanded, taken_from_host};
 use std::fmt::{self, Display, Formatter};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Further notes are only counted: the page lists them.
@@ -35,6 +35,14 @@ pub struct MeshArguments {
     /// packages: their contents may be in the output
     #[arg(long)]
     allow_host: bool,
+}
+
+/// The folder of `--mesh-root`.
+pub fn mesh_root(folder: Option<&Path>) -> Result<Option<&Path>> {
+    match folder.filter(|folder| !folder.is_dir()) {
+        Some(folder) => Err(Failure::wrong(format!("--mesh-root is `{}`, expected a folder", folder.display()))),
+        None => Ok(folder),
+    }
 }
 
 #[derive(Args, Debug)]
@@ -109,9 +117,7 @@ impl MeshArguments {
             Which::Collision => Meshes::Collision,
             Which::None => Meshes::None,
         };
-        if let Some(folder) = self.mesh_root.as_deref().filter(|folder| !folder.is_dir()) {
-            return Err(Failure::wrong(format!("--mesh-root is `{}`, expected a folder", folder.display())));
-        }
+        let mesh_root = mesh_root(self.mesh_root.as_deref())?;
         self.check_host(robot)?;
         if name_or_path == "-" {
             let text = input::robot_text().map_err(|error| input::cannot(name_or_path, &error))?;
@@ -119,7 +125,7 @@ impl MeshArguments {
             let text = expansion.as_ref().map_or(text, |expansion| expansion.as_bytes());
             return Ok(Drawing::of_text(input::name(name_or_path), text, meshes));
         }
-        Ok(Drawing::of_file_below(name_or_path, &robot.settings().xacro, meshes, self.mesh_root.as_deref())?)
+        Ok(Drawing::of_file_below(name_or_path, &robot.settings().xacro, meshes, mesh_root)?)
     }
 }
 

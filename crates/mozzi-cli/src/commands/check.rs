@@ -2,6 +2,7 @@
 
 use super::{info, repairs};
 use crate::failure::{self, Failure, Result};
+use crate::report::mesh_root;
 use crate::robot::PolicyArguments;
 use crate::{input, json as pretty, robot_json, sarif};
 use clap::{Args, ValueEnum};
@@ -9,6 +10,7 @@ use mozzi::Model;
 use mozzi_urdf::json::Misplaced;
 use mozzi_urdf::{Consequence, Diagnostic, Severity};
 use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 pub struct CheckArguments {
@@ -31,9 +33,12 @@ pub struct CheckArguments {
     /// kept
     #[arg(long, value_name = "density=KG_PER_M3", conflicts_with = "fix")]
     estimate_inertia: Option<String>,
-    /// Write the proposals into the files, and nothing else
+    /// Write the proposals into the files, and nothing else; - is written to standard output
     #[arg(long)]
     apply: bool,
+    /// A folder above the meshes of the robot's file that lie outside of its own folder and package
+    #[arg(long, value_name = "FOLDER")]
+    mesh_root: Option<PathBuf>,
     #[command(flatten)]
     policy: PolicyArguments,
 }
@@ -53,6 +58,11 @@ impl CheckArguments {
     /// Whether proposals are applied.
     pub fn applies(&self) -> bool {
         self.apply
+    }
+
+    /// The folder of `--mesh-root`.
+    pub fn mesh_root(&self) -> Result<Option<&Path>> {
+        mesh_root(self.mesh_root.as_deref())
     }
 
     /// The density of `--estimate-inertia`.

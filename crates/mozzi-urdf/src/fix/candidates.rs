@@ -2,9 +2,9 @@
 
 use super::inertial::{Inertial, MOMENTS, Numbers, of_point};
 use super::{Proposal, Robot, twin};
-use mozzi::SpatialInertia;
+use crate::urdf::vocabulary::shown;
 use mozzi::linalg::Sym3;
-use mozzi::spatial::Rounded;
+use mozzi::{SO3, SpatialInertia};
 
 /// A possible inertia is left alone within this many powers of ten of its shape's.
 const DOUBTED: f64 = 1.3;
@@ -29,23 +29,23 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     if old.mass <= 0.0 || inertial.numbers.moments == [0.0; 6] {
         return None; // a massless link, or a point mass
     }
-    let (verdict, solid) = (old.verdict(), robot.solid(name));
+    let (verdict, solid) = (old.verdict(), robot.solid(name).filter(|solid| solid.can_have(old.mass)));
     let misfit = solid.map_or(0.0, |solid| solid.misfit(old));
     let is_possible = verdict.is_physical();
     if is_possible && (misfit <= DOUBTED || is_placeholder(&inertial.numbers)) {
         return None;
     }
     let nearest = old.nearest_physical()?;
-    let twin = twin::names(name).iter().find_map(|other| {
-        let other = robot.inertials.get(other)?;
+    let twin = twin::names(name).into_iter().find_map(|name| {
+        let other = robot.inertials.get(&name)?;
         let G = other.inertia(&other.numbers);
-        (G.mass > 0.0 && G.verdict().is_physical()).then_some(G)
+        (G.mass > 0.0 && G.verdict().is_physical()).then_some((name, other, G))
     });
     let is_fitting = |G: SpatialInertia| match solid {
         Some(solid) => solid.misfit(G) <= if is_possible { FITTING } else { ALLOWED },
         None => true,
     };
-    let is_alike = |G: SpatialInertia| twin.is_some_and(|twin| alike(G, twin));
+    let is_alike = |G: SpatialInertia| twin.as_ref().is_some_and(|(.., twin)| alike(G, *twin));
     let mut best: Option<(f64, Candidate)> = None;
     let mut consider = |candidate: Candidate| {
         // a product of inertia alone moves no moment closer to the shape's
@@ -63,10 +63,13 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
             best = Some((score, candidate));
         }
     };
-    let is_rounded = !is_possible && moved(old, nearest) <= ROUNDED;
-    if !is_rounded {
-        all(inertial, old).into_iter().for_each(&mut consider);
-    }
+    let is_negative = [0, 3, 5].iter().any(|&k| inertial.numbers.moments[k] < 0.0);
+    let is_rounded = !is_possible && !is_negative && moved(old, nearest) <= ROUNDED;
+    let mirrored = twin.as_ref().and_then(|(name, other, _)| mirrored(inertial, name, other));
+    let all = all(inertial, old).into_iter().chain(mirrored);
+    // of numbers that are off by little, only those of the twin are better than the nearest possible ones
+    let is_twin = |candidate: &Candidate| is_alike(inertial.inertia(&candidate.numbers)) && !is_alike(old);
+    all.filter(|candidate| !is_rounded || is_twin(candidate)).for_each(&mut consider);
     let found = best.map(|(_, candidate)| candidate).or_else(|| {
         let reason = format!("{verdict}; this is the nearest inertia that a body can have");
         let numbers = inertial.numbers_of(nearest);
@@ -77,13 +80,7 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     let (editor, change) = inertial.write(&numbers);
     let mut proposal = robot.proposal(found.code, inertial.link, &editor);
     let why = match (is_possible, solid) {
-        (true, Some(solid)) => {
-            let filled = solid.moments.I * (old.mass / solid.moments.size);
-            format!(
-                "; as written, the moments are about {} times those of the link's shape, uniformly filled",
-                Rounded(old.about_center_of_mass().trace() / filled.trace())
-            )
-        }
+        (true, Some(solid)) => format!("; as written, {}", solid.doubt(old, inertial.R)),
         _ if found.code == "nearest_inertia" => String::new(),
         _ => format!("; as written, {verdict}"),
     };
@@ -142,6 +139,13 @@ fn all(inertial: &Inertial<'_>, old: SpatialInertia) -> Vec<Candidate> {
         moments.iter_mut().zip([xx, xy, xz, yy, yz, zz]).for_each(|(moment, more)| *moment -= more);
         let reason = "the moments are about the origin of the link, expected those about the centre of mass".into();
         add("about_origin", 0.1, reason, Numbers { moments, ..numbers });
+        // simpler than a power of ten of a single product
+        for sign in [-2.0, 2.0] {
+            let mut moments = numbers.moments;
+            [(1, xy), (2, xz), (4, yz)].into_iter().for_each(|(k, more)| moments[k] += sign * more);
+            let reason = "the products have the parallel-axis term with the wrong sign".into();
+            add("parallel_axis", 0.04, reason, Numbers { moments, ..numbers });
+        }
     }
     for (mass, moment, center, said) in [
         (0, -6, 0, "the moments are in kg mm²"),
@@ -169,6 +173,26 @@ fn all(inertial: &Inertial<'_>, old: SpatialInertia) -> Vec<Candidate> {
         add("units", 0.1 * count as f64, said.to_string(), numbers);
     }
     found
+}
+
+/// The products of a twin that is the mirror image of this link: the same mass and moments, and the centre on the other
+/// side of a plane of its axes.
+fn mirrored(inertial: &Inertial<'_>, name: &str, twin: &Inertial<'_>) -> Option<Candidate> {
+    let (own, other) = (&inertial.numbers, &twin.numbers);
+    let near = |a: f64, b: f64| (a - b).abs() <= 0.01 * b.abs();
+    let is_same = near(own.mass, other.mass) && [0, 3, 5].into_iter().all(|k| near(own.moments[k], other.moments[k]));
+    let is_turned = [inertial, twin].iter().any(|one| one.R != SO3::identity());
+    // the axis across the plane, and the products that change their sign
+    let across = [("x", [1, 2]), ("y", [1, 4]), ("z", [2, 4])].into_iter().enumerate().find(|(axis, _)| {
+        let side = |k: usize| if k == *axis { -1.0 } else { 1.0 };
+        own.center[*axis] != 0.0 && (0..3).all(|k| near(own.center[k], side(k) * other.center[k]))
+    });
+    let (_, (axis, products)) = across.filter(|_| is_same && !is_turned)?;
+    let mut numbers = *own;
+    [1, 2, 4].into_iter().for_each(|k| numbers.moments[k] = other.moments[k]);
+    products.into_iter().for_each(|k| numbers.moments[k] = 0.0 - numbers.moments[k]);
+    let reason = format!("the products are not those of link `{}`, its mirror image across {axis} = 0", shown(name));
+    Some(Candidate { code: "mirrored_products", reason, numbers, cost: 0.0 })
 }
 
 /// True if all three moments are the same number of one digit and the products are 0: a placeholder, which no change of

@@ -2,19 +2,26 @@
 
 use super::fit::Detail;
 use super::inertial::shortest;
-use super::{Proposal, with_robot};
+use super::{Repairs, with_robot};
 use crate::edit::element::{Editor, Tag};
 use crate::{EditError, Settings};
 use mozzi::linalg::Sym3;
 use mozzi::{SpatialInertia, Vec3};
+use std::path::Path;
 
 /// A proposal for each link with a readable shape: the convex hull of its shapes, filled with this density, kg/m³.
 /// A given mass of more than 0 is kept, and only its distribution is that of the shape.
 ///
 /// # Errors
 /// As [`proposals`](super::proposals).
-pub fn estimates(file_name: &str, text: &str, density: f64, settings: &Settings) -> Result<Vec<Proposal>, EditError> {
-    with_robot(file_name, text, settings, Detail::All, |robot| {
+pub fn estimates(
+    file_name: &str,
+    text: &str,
+    density: f64,
+    mesh_root: Option<&Path>,
+    settings: &Settings,
+) -> Result<Repairs, EditError> {
+    with_robot(file_name, text, mesh_root, settings, Detail::All, |robot| {
         let links = robot.root.children().filter(|tag| tag.name() == "link");
         let all = links.filter_map(|link| {
             let name = link.attribute("name")?;

@@ -4,15 +4,22 @@ use crate::geometry::hull::convex_hull;
 use crate::geometry::moments::{Filling, Moments, moments};
 use crate::geometry::surface::Surface;
 use crate::geometry::{Form, Purpose, Shape, locate};
+use crate::report::visible::visible;
 use crate::{XacroArguments, files};
-use mozzi::{SpatialInertia, Vec3};
+use mozzi::spatial::Rounded;
+use mozzi::{SO3, SpatialInertia, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
+use std::fmt::Display;
 use std::path::Path;
 
 /// A larger mesh is not read.
 const MOST_BYTES: u64 = 64 << 20;
 /// No solid is denser, kg/m³: osmium has 22,600.
 const DENSEST: f64 = 25_000.0;
+/// A shape that would be denser tells nothing about its link, kg/m³: a mass in g as one in kg gives at most 1000 times
+/// [`DENSEST`].
+const ABSURD: f64 = 3e7;
 /// Points on a circle.
 const AROUND: u32 = 24;
 /// Meshes with more points are reduced to the farthest points in this many directions, which is enough for a
@@ -45,23 +52,55 @@ impl Solid {
         Some(Solid { moments, low: bound(f64::min, f64::INFINITY), high: bound(f64::max, f64::NEG_INFINITY) })
     }
 
+    /// False for a dummy shape, such as a ball of 1 mm on a body of kilograms.
+    pub fn can_have(&self, mass: f64) -> bool {
+        mass / self.moments.size <= ABSURD
+    }
+
     /// The misfit of an inertia and the hull, uniformly filled with the same mass, in powers of ten. It is the largest
     /// of three: |log₁₀| of the ratios of moments about the centre of mass, in the link's axes; an excessive density;
     /// the distance of the centre of mass from the hull's box. Infinite if a moment is not above 0.
     pub fn misfit(&self, G: SpatialInertia) -> f64 {
-        let (found, filled) = (G.about_center_of_mass(), self.moments.I * (G.mass / self.moments.size));
-        let ratios = [(found.xx, filled.xx), (found.yy, filled.yy), (found.zz, filled.zz)];
-        let tenfold = |ratio: f64| if ratio > 0.0 { ratio.log10().abs() } else { f64::INFINITY };
-        let worst = ratios.map(|(a, b)| tenfold(a / b)).into_iter().fold(0.0, f64::max);
+        let [moments, dense, away] = self.misfits(G, SO3::identity());
+        moments.max(dense).max(away)
+    }
+
+    /// The misfits of moments in these axes, density and centre.
+    fn misfits(&self, G: SpatialInertia, R: SO3) -> [f64; 3] {
+        let moments = self.ratios(G, R).map(|(_, ratio)| tenfold(ratio)).into_iter().fold(0.0, f64::max);
         let density = G.mass / self.moments.size;
         let too_dense = if density > DENSEST { (density / 1000.0).log10() } else { 0.0 };
-        // the centre's way out of the box, over its size
+        // the centre's way out of the box, over the box's size
+        let whole = [0, 1, 2].map(|k| self.high[k] - self.low[k]).into_iter().fold(0.0, f64::max);
+        [moments, too_dense, (1.0 + self.outside(G) / whole).log10() * 2.0]
+    }
+
+    /// The moments in these axes, as parts of those of the hull.
+    fn ratios(&self, G: SpatialInertia, R: SO3) -> [(&'static str, f64); 3] {
+        let to_axes = R.inverse();
+        let [found, filled] = [G.about_center_of_mass(), self.moments.I * (G.mass / self.moments.size)]
+            .map(|I| I.congruence(to_axes.matrix()));
+        [("ixx", found.xx / filled.xx), ("iyy", found.yy / filled.yy), ("izz", found.zz / filled.zz)]
+    }
+
+    /// The centre's way out of the hull's box, m.
+    fn outside(&self, G: SpatialInertia) -> f64 {
         let c = G.center_of_mass().0;
-        let size = [0, 1, 2].map(|k| self.high[k] - self.low[k]);
-        let whole = size.into_iter().fold(0.0, f64::max);
-        let away = [0, 1, 2].map(|k| (self.low[k] - c[k]).max(c[k] - self.high[k]).max(0.0) / whole);
-        let away = away.into_iter().fold(0.0, f64::max);
-        worst.max(too_dense).max((1.0 + away).log10() * 2.0)
+        [0, 1, 2].map(|k| (self.low[k] - c[k]).max(c[k] - self.high[k])).into_iter().fold(0.0, f64::max)
+    }
+
+    /// What differs the most from the hull: a moment in these axes, the density, or the centre.
+    pub fn doubt(&self, G: SpatialInertia, R: SO3) -> String {
+        let [moments, dense, away] = self.misfits(G, R);
+        if away >= moments.max(dense) {
+            return format!("the centre of mass is {} m outside of the link's shape", Rounded(self.outside(G)));
+        }
+        if dense >= moments {
+            return format!("the link's shape would have {} kg/m³", Rounded(G.mass / self.moments.size));
+        }
+        let worst = self.ratios(G, R).into_iter().max_by(|(_, a), (_, b)| tenfold(*a).total_cmp(&tenfold(*b)));
+        let (name, ratio) = worst.unwrap_or_default();
+        format!("{name} is about {} times that of the link's shape, uniformly filled", Rounded(ratio))
     }
 
     /// How far an inertia is from the hull's, all in all; for the choice among possible ones.
@@ -74,27 +113,49 @@ impl Solid {
     }
 }
 
-/// The solids of all links whose shapes can be read: the collision shapes, or else the visual ones.
-pub(super) fn solids(file: &Path, text: &str, detail: Detail) -> BTreeMap<String, Solid> {
+/// |log₁₀| of a ratio; infinite if it is not above 0.
+fn tenfold(ratio: f64) -> f64 {
+    if ratio > 0.0 { ratio.log10().abs() } else { f64::INFINITY }
+}
+
+/// The solids of links, and the reasons why others have none.
+#[derive(Default)]
+pub(super) struct Solids {
+    pub all: BTreeMap<String, Solid>,
+    /// The first shape of each link without a solid that was not read.
+    pub unread: BTreeMap<String, String>,
+}
+
+/// The solids of all links whose shapes can be read: the collision shapes, or else the visual ones. Meshes are located
+/// as those of pages are; they may also be below `mesh_root`.
+pub(super) fn solids(file: &Path, text: &str, detail: Detail, mesh_root: Option<&Path>) -> Solids {
     let shapes = crate::geometry::parse_with(&file.to_string_lossy(), text, &XacroArguments::default()).shapes;
     let mut links: BTreeMap<&str, Vec<&Shape>> = BTreeMap::new();
     for shape in &shapes {
         links.entry(&shape.link).or_default().push(shape);
     }
-    let solid = |shapes: &[&Shape]| {
-        [Purpose::Collision, Purpose::Visual].into_iter().find_map(|purpose| {
+    let mut solids = Solids::default();
+    for (link, shapes) in links {
+        let mut why = None;
+        let solid = [Purpose::Collision, Purpose::Visual].into_iter().find_map(|purpose| {
             let mut points = Vec::new();
             for shape in shapes.iter().filter(|shape| shape.purpose == purpose) {
-                let mut own = points_of(shape, file)?;
+                let read = points_of(shape, file, mesh_root);
+                let mut own = read.map_err(|error| why.get_or_insert(error).clone()).ok()?;
                 if detail == Detail::Rough {
                     own = farthest(own);
                 }
                 points.extend(own.into_iter().map(|p| shape.T.R.matrix() * p + shape.T.p));
             }
             Solid::of(&points)
-        })
-    };
-    links.into_iter().filter_map(|(link, shapes)| Some((link.to_string(), solid(&shapes)?))).collect()
+        });
+        if let Some(solid) = solid {
+            solids.all.insert(link.to_string(), solid);
+        } else if let Some(why) = why {
+            solids.unread.insert(link.to_string(), why);
+        }
+    }
+    solids
 }
 
 /// The points that are the farthest in some direction of Fibonacci's sphere.
@@ -113,8 +174,8 @@ fn farthest(points: Vec<Vec3>) -> Vec<Vec3> {
     chosen.into_iter().map(|i| points[i]).collect()
 }
 
-/// Points whose hull is about the shape's; None if its mesh cannot be read.
-fn points_of(shape: &Shape, robot: &Path) -> Option<Vec<Vec3>> {
+/// Points whose hull is about the shape's, or why its mesh cannot be read.
+fn points_of(shape: &Shape, robot: &Path, mesh_root: Option<&Path>) -> Result<Vec<Vec3>, String> {
     let ring = |radius: f64, z: f64| {
         (0..AROUND).map(move |k| {
             let (sin, cos) = (f64::from(k) / f64::from(AROUND) * std::f64::consts::TAU).sin_cos();
@@ -128,7 +189,7 @@ fn points_of(shape: &Shape, robot: &Path) -> Option<Vec<Vec3>> {
             ring(radius * cos, h + up * radius * sin)
         })
     };
-    Some(match &shape.form {
+    Ok(match &shape.form {
         Form::Box { size } => {
             let corner = |k: u32| Vec3([0, 1, 2].map(|i| (f64::from(k >> i & 1) - 0.5) * size[i]));
             (0..8).map(corner).collect()
@@ -143,9 +204,11 @@ fn points_of(shape: &Shape, robot: &Path) -> Option<Vec<Vec3>> {
             ball.map(|p| Vec3([0, 1, 2].map(|k| p.0[k] * radii[k]))).collect()
         }
         Form::Mesh { file, scale } => {
-            let path = locate(robot, file, None).ok()?;
-            let format = path.extension()?.to_str()?.to_ascii_lowercase();
-            let surface = Surface::read(&format, &files::read(&path, MOST_BYTES).ok()?).ok()?;
+            let path = locate(robot, file, mesh_root).map_err(|why| why.to_string())?;
+            let wrong = |why: &dyn Display| format!("mesh {}: {why}", visible(file));
+            let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
+            let bytes = files::read(&path, MOST_BYTES).map_err(|why| wrong(&why))?;
+            let surface = Surface::read(&ending, &bytes).map_err(|why| wrong(&why))?;
             surface.vertices.iter().map(|v| Vec3([0, 1, 2].map(|k| v.0[k] * scale[k]))).collect()
         }
     })

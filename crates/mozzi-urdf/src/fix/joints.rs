@@ -35,7 +35,8 @@ fn reversed(robot: &Robot<'_>, joint: Tag<'_>) -> Option<Proposal> {
     Some(proposal)
 }
 
-/// The effort of the joint on the other side, or the one that all joints of this kind and speed have.
+/// The effort of the joint on the other side, or the one that all other joints of this kind and speed have. A joint
+/// whose name differs only in a number is no evidence: the wrist of an arm has less than its shoulder.
 fn without_effort(robot: &Robot<'_>, joint: Tag<'_>, joints: &[Tag<'_>]) -> Option<Proposal> {
     let kind = joint.attribute("type").filter(|kind| matches!(*kind, "revolute" | "prismatic" | "continuous"))?;
     if number(joint, "effort") != Some(0.0) || joint.child("mimic").is_some() {
@@ -43,10 +44,11 @@ fn without_effort(robot: &Robot<'_>, joint: Tag<'_>, joints: &[Tag<'_>]) -> Opti
     }
     let others = || joints.iter().filter(|other| other.attribute("type") == Some(kind) && other.node != joint.node);
     let effort = |other: &Tag<'_>| number(*other, "effort").filter(|effort| *effort > 0.0);
-    let names = twin::names(joint.attribute("name")?);
+    let names = twin::mirrored(joint.attribute("name")?);
     let twin = names.iter().find_map(|name| {
         let other = others().find(|other| other.attribute("name") == Some(name.as_str()))?;
-        Some((effort(other)?, format!("joint `{name}`, its counterpart, has this one")))
+        let is_as_fast = number(*other, "velocity") == number(joint, "velocity");
+        Some((effort(other).filter(|_| is_as_fast)?, format!("joint `{name}`, its counterpart, has this one")))
     });
     let alike = || {
         let velocity = number(joint, "velocity")?;

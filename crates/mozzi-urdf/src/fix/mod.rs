@@ -11,15 +11,17 @@ mod estimate;
 mod fit;
 mod inertial;
 mod joints;
+mod repairs;
 mod twin;
 
 pub use estimate::estimates;
+pub use repairs::Repairs;
 
 use crate::edit::element::{Editor, Replacement, Tag, replaced};
 use crate::text::expansion;
 use crate::urdf::write::NotUrdf;
 use crate::{EditError, Policy, Settings, parse_with};
-use fit::{Detail, Solid};
+use fit::{Detail, Solid, Solids};
 use inertial::Inertial;
 use mozzi::SpatialInertia;
 use roxmltree::Document;
@@ -59,7 +61,7 @@ struct Robot<'a> {
     root: Tag<'a>,
     document: &'a Document<'a>,
     description: mozzi::Description,
-    solids: BTreeMap<String, Solid>,
+    solids: Solids,
     inertials: BTreeMap<String, Inertial<'a>>,
 }
 
@@ -69,7 +71,7 @@ impl Robot<'_> {
     }
 
     fn solid(&self, link: &str) -> Option<&Solid> {
-        self.solids.get(link)
+        self.solids.all.get(link)
     }
 
     /// A proposal that makes these changes of the text.
@@ -90,12 +92,18 @@ impl Robot<'_> {
 
 /// The proposals for a URDF, in the order of the text: an inertia with a power of ten too much, of a wrong sign, with
 /// its numbers in wrong places, about the file's origin, in mm or g, or else the nearest possible one; a mass counted
-/// twice below a fixed joint; reversed limits; a limit of effort of 0. Shapes are searched for next to the file.
+/// twice below a fixed joint; reversed limits; a limit of effort of 0. Shapes are searched for next to the file, and
+/// below `mesh_root`.
 ///
 /// # Errors
 /// [`EditError::Load`] if the text cannot be read; [`EditError::Unsupported`] if it is not URDF.
-pub fn proposals(file_name: &str, text: &str, settings: &Settings) -> Result<Vec<Proposal>, EditError> {
-    with_robot(file_name, text, settings, Detail::Rough, |robot| {
+pub fn proposals(
+    file_name: &str,
+    text: &str,
+    mesh_root: Option<&Path>,
+    settings: &Settings,
+) -> Result<Repairs, EditError> {
+    let mut repairs = with_robot(file_name, text, mesh_root, settings, Detail::Rough, |robot| {
         let twice = duplicate::proposals(robot);
         let is_twice = |name: &str| twice.iter().any(|one| one.inertia.as_ref().is_some_and(|(link, ..)| link == name));
         let mut all: Vec<Proposal> = Vec::new();
@@ -107,7 +115,9 @@ pub fn proposals(file_name: &str, text: &str, settings: &Settings) -> Result<Vec
         all.extend(twice);
         all.extend(joints::proposals(robot));
         all
-    })
+    })?;
+    repairs.count_left(file_name, text, settings);
+    Ok(repairs)
 }
 
 /// The misfit of the inertia of each link with a mass to its shape, uniformly filled, in powers of ten; links whose
@@ -116,10 +126,12 @@ pub fn misfits(file_name: &str, text: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let Ok(document) = Document::parse(body) else { return found };
-    let solids = fit::solids(Path::new(file_name), text, Detail::Rough);
+    let solids = fit::solids(Path::new(file_name), text, Detail::Rough, None).all;
     for link in Tag::new(document.root_element(), body).children().filter(|tag| tag.name() == "link") {
         let (Some(name), Some(inertial)) = (link.attribute("name"), Inertial::read(link)) else { continue };
-        if let Some(solid) = solids.get(name).filter(|_| inertial.numbers.mass > 0.0) {
+        if let Some(solid) =
+            solids.get(name).filter(|solid| inertial.numbers.mass > 0.0 && solid.can_have(inertial.numbers.mass))
+        {
             found.insert(name.to_string(), solid.misfit(inertial.inertia(&inertial.numbers)));
         }
     }
@@ -137,10 +149,11 @@ pub fn apply(text: &str, proposals: &[Proposal]) -> String {
 fn with_robot(
     file_name: &str,
     text: &str,
+    mesh_root: Option<&Path>,
     settings: &Settings,
     detail: Detail,
     make: impl FnOnce(&Robot<'_>) -> Vec<Proposal>,
-) -> Result<Vec<Proposal>, EditError> {
+) -> Result<Repairs, EditError> {
     let unsupported = |why: &str| EditError::Unsupported(NotUrdf { reasons: vec![why.to_string()] });
     if expansion::of(file_name, text, settings).map_err(EditError::Load)?.is_some() {
         return Err(unsupported("repairs are of URDF: expand it first, by `mozzi xacro`"));
@@ -164,10 +177,10 @@ fn with_robot(
             inertials.insert(name.to_string(), inertial);
         }
     }
-    let solids = fit::solids(Path::new(file_name), text, detail);
+    let solids = fit::solids(Path::new(file_name), text, detail, mesh_root);
     let robot = Robot { root, document: &document, description, solids, inertials };
     let mut all = make(&robot);
     all.sort_by_key(|proposal| proposal.line);
     effect::tell(file_name, &apply(text, &all), settings, &mut all);
-    Ok(all)
+    Ok(Repairs { proposals: all, unread: robot.solids.unread, left: [0; 2] })
 }

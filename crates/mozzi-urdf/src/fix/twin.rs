@@ -16,8 +16,15 @@ const PAIRS: [(&str, &str); 12] = [
     ("f", "h"),
 ];
 
-/// The names that another of its kind may have.
+/// The names that another of its kind may have: its mirror images, and others of a row.
 pub(super) fn names(name: &str) -> Vec<String> {
+    let mut found = mirrored(name);
+    found.extend(numbered(name));
+    found
+}
+
+/// The names on the other side: left_hip, right_hip.
+pub(super) fn mirrored(name: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (a, b) in PAIRS.into_iter().flat_map(|(a, b)| [(a, b), (b, a)]) {
         for (at, _) in name.match_indices(a) {
@@ -30,7 +37,12 @@ pub(super) fn names(name: &str) -> Vec<String> {
             }
         }
     }
-    // one of several: finger1, finger2
+    found
+}
+
+/// The names of others in a row: finger1, finger2. Joints in a row need not be alike.
+fn numbered(name: &str) -> Vec<String> {
+    let mut found = Vec::new();
     for (at, digit) in name.char_indices().filter(|(_, c)| c.is_ascii_digit()) {
         for other in ('0'..='9').filter(|other| *other != digit) {
             found.push(format!("{}{other}{}", &name[..at], &name[at + 1..]));
@@ -45,7 +57,7 @@ fn is_upper(c: Option<char>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::names;
+    use super::{mirrored, names};
 
     #[test]
     fn left_is_the_twin_of_right() {
@@ -60,5 +72,6 @@ mod tests {
         }
         assert!(names("elbow").is_empty(), "{:?}", names("elbow"));
         assert!(names("finger1_tip").contains(&"finger2_tip".to_string()));
+        assert!(mirrored("finger1_tip").is_empty());
     }
 }

@@ -78,8 +78,8 @@ fn proposals(path: &Path) -> String {
         return "–".into();
     }
     let text = std::fs::read_to_string(path).expect("a text");
-    match fix::proposals(&path.to_string_lossy(), &text, &Settings::default()) {
-        Ok(all) => counted(all.iter().map(|one| format!("`{}`", one.code))),
+    match fix::proposals(&path.to_string_lossy(), &text, None, &Settings::default()) {
+        Ok(all) => counted(all.proposals.iter().map(|one| format!("`{}`", one.code))),
         Err(_) => "–".into(),
     }
 }

@@ -1,6 +1,7 @@
 //! Repairs of published faults, rebuilt as small files; none where there is nothing to repair; and of 200 faults that
 //! a generator puts into published robots, if `MOZZI_ROBOTS` names the folder of example-robot-data.
 
+mod evidence;
 mod seeded;
 
 use crate::files::urdf_files;
@@ -35,7 +36,7 @@ const SOUND: &str = r#"<origin xyz="0.02 0 0.15"/><mass value="6"/><inertia ixx=
 const LIMIT: &str = r#"lower="-1" upper="2" effort="30""#;
 
 fn found(text: &str) -> Vec<Proposal> {
-    proposals("arm.urdf", text, &Settings::default()).unwrap()
+    proposals("arm.urdf", text, None, &Settings::default()).unwrap().proposals
 }
 
 #[test]
@@ -138,7 +139,7 @@ fn a_mass_below_a_fixed_joint_is_counted_once() {
 #[test]
 fn a_density_gives_inertias() {
     let text = arm(SOUND, LIMIT).replace(&format!("    <inertial>{SOUND}</inertial>\n"), "");
-    let list = estimates("arm.urdf", &text, 1000.0, &Settings::default()).unwrap();
+    let list = estimates("arm.urdf", &text, 1000.0, None, &Settings::default()).unwrap().proposals;
     assert_eq!(list.len(), 2, "the base has no shape");
     let repaired = parse("arm.urdf", apply(&text, &list)).unwrap().description;
     // 1000 kg/m³ of 0.1 × 0.2 × 0.3 m; the other keeps its mass of 6 kg, which is the same
@@ -154,7 +155,7 @@ fn a_density_gives_inertias() {
 
 #[test]
 fn other_languages_are_refused_by_name() {
-    let why = |text: &str| proposals("a.xml", text, &Settings::default()).unwrap_err().to_string();
+    let why = |text: &str| proposals("a.xml", text, None, &Settings::default()).unwrap_err().to_string();
     assert!(why("<mujoco><worldbody/></mujoco>").contains("repairs are of URDF"));
     let xacro = "<robot name='a' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:property name='x' value='1'/><link name='b'/></robot>";
     assert!(why(xacro).contains("mozzi xacro"), "{}", why(xacro));
@@ -189,7 +190,7 @@ fn sound_robots(step: usize) {
         }
         loaded += 1;
         let misfits = misfits(&name, &text);
-        for proposal in proposals(&name, &text, &Settings::default()).unwrap() {
+        for proposal in proposals(&name, &text, None, &Settings::default()).unwrap().proposals {
             made += 1;
             println!("{name}: {proposal}");
             let Some((link, old, _)) = &proposal.inertia else { continue };

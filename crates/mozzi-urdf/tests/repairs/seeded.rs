@@ -267,7 +267,8 @@ fn two_hundred_faults_of_twenty_robots() {
             let robot = &robots[at % ROBOTS];
             let Some((text, element)) = (0..60).find_map(|_| fault(robot, kind, &mut draw)) else { continue };
             total[kind] += 1;
-            let found = proposals(&robot.name, &text, &Settings::default()).unwrap_or_default();
+            let found = proposals(&robot.name, &text, None, &Settings::default());
+            let found = found.map(|repairs| repairs.proposals).unwrap_or_default();
             match is_repaired(robot, kind, &element, &apply(&text, &found)) {
                 true => repaired[kind] += 1,
                 false => {
