@@ -44,6 +44,7 @@ fn python_and_what_cannot_be_converted() {
         assert!(code == 1 && message.contains(words), "{message}");
     };
     says(&["convert", "ur5", &path("ur5.txt")], "expected a name that ends in .urdf, .sdf, .xml (MJCF), .json or .py");
+    says(&["convert", "ur5", "-"], "OUT is `-`, expected --as FORMAT for standard output");
     says(&["convert", "ur5", &path("ur5.usd")], "`urdf-usd-converter` (PyPI) makes it of a URDF");
     says(&["convert", "panda", &path("panda.py")], "serial chains");
     let robot = path("ur5.json");
@@ -284,4 +285,27 @@ fn through_sdf_and_mjcf_the_robot_stays() {
     let checked = common::mozzi(&["check", &path("r.sdf")]);
     assert!(String::from_utf8_lossy(&checked.stderr).contains("is valid"), "{checked:?}");
     assert!(text(&["explain", "mozzi::sdf::default_inertia"]).contains("1 kg"));
+}
+
+#[test]
+fn actuators_and_shapes_are_counted_and_standard_output_has_a_format() {
+    let folder = folder("omitted");
+    let model = "<mujoco><worldbody><body><joint name='j'/><geom size='1'/></body></worldbody>\
+                 <actuator><motor joint='j'/><position joint='j'/></actuator></mujoco>";
+    let model = file(&folder, "a.xml", model);
+    for ending in ["xml", "json", "urdf", "sdf"] {
+        let out = folder.join(format!("out.{ending}")).to_str().expect("text").to_string();
+        let said = String::from_utf8(common::mozzi(&["convert", &model, &out]).stderr).expect("text");
+        assert!(said.contains(&format!("out.{ending} omits the 2 actuators of ")), "{said}");
+        assert!(said.contains(&format!("out.{ending} omits the shape of ")), "{said}");
+        let out = folder.join(format!("none.{ending}")).to_str().expect("text").to_string();
+        let (code, said) = complaint(&["convert", &model, &out, "--strict"]);
+        assert!(code == 1 && said.contains("--strict, and it cannot express the 2 actuators of "), "{said}");
+    }
+    let written = |name: &str| std::fs::read_to_string(folder.join(name)).expect("a file");
+    for (format, name) in [("sdf", "r.sdf"), ("json", "r.json")] {
+        let out = folder.join(name).to_str().expect("text").to_string();
+        text(&["convert", "ur5", &out]);
+        assert_eq!(text(&["convert", "ur5", "-", "--as", format]), written(name));
+    }
 }

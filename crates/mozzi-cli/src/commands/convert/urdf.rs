@@ -79,12 +79,12 @@ const HELP: &str = ".json can express all of it; without --strict, or with --lea
 pub fn shapes(input: &str, output: &str, settings: &Settings) -> Result<()> {
     let Some(text) = any_source(input, settings.clone())? else { return Ok(()) };
     let count: usize = ["<visual", "<collision", "<geom "].iter().map(|tag| text.matches(tag).count()).sum();
-    if count > 0 {
-        failure::note(&format!(
-            "{output} omits the {count} shapes of {}, for pictures and contacts",
-            input::name(input)
-        ));
-    }
+    let count = match count {
+        0 => return Ok(()),
+        1 => "shape".to_string(),
+        count => format!("{count} shapes"),
+    };
+    failure::note(&format!("{output} omits the {count} of {}, for pictures and contacts", input::name(input)));
     Ok(())
 }
 
