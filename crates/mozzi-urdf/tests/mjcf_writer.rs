@@ -174,3 +174,13 @@ fn bodies_that_mujoco_refuses_are_named() {
     );
     assert!(remarks(&carried).is_empty(), "{:?}", remarks(&carried));
 }
+
+#[test]
+fn a_fixed_joint_follows_none() {
+    let text = "<robot name=\"r\"><link name=\"base\"/><link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" \
+                ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link><link name=\"b\"/><joint name=\"j\" type=\"continuous\">\
+                <parent link=\"base\"/><child link=\"a\"/><axis xyz=\"0 1 0\"/></joint><joint name=\"f\" type=\"fixed\"><parent \
+                link=\"a\"/><child link=\"b\"/><mimic joint=\"j\"/></joint></robot>";
+    let written = mjcf::write(&parse("r.urdf", text).unwrap().description).unwrap().text;
+    assert!(!written.contains("<equality>"), "{written}");
+}

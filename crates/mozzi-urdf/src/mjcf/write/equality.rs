@@ -4,7 +4,7 @@
 
 use super::{numbers, travel};
 use crate::urdf::write::escaped;
-use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Gear};
+use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Gear, JointKind};
 use mozzi::{Description, SE3};
 use std::fmt::{self, Write};
 
@@ -86,7 +86,7 @@ pub(super) fn equalities(text: &mut String, d: &Description) -> fmt::Result {
             let c = numbers(&[0.0, A.pitch(), 0.0, 0.0, 0.0]);
             writeln!(lines, "    <joint joint1=\"{name}.travel\" joint2=\"{name}\" polycoef=\"{c}\"/>")?;
         }
-        if let Some(mimic) = &joint.mimic {
+        if let Some(mimic) = joint.mimic.as_ref().filter(|_| joint.kind != JointKind::Fixed) {
             let (source, c) = (escaped(&mimic.joint), numbers(&[mimic.offset, mimic.ratio, 0.0, 0.0, 0.0]));
             writeln!(lines, "    <joint joint1=\"{name}\" joint2=\"{source}\" polycoef=\"{c}\"/>")?;
         }
