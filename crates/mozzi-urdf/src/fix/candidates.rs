@@ -48,9 +48,11 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     let is_alike = |G: SpatialInertia| twin.as_ref().is_some_and(|(.., twin)| alike(G, *twin));
     let mut best: Option<(f64, Candidate)> = None;
     let mut consider = |candidate: Candidate| {
-        // a product of inertia alone moves no moment closer to the shape's
-        let keeps = |k: usize| candidate.numbers.moments[k] == inertial.numbers.moments[k];
-        if is_possible && candidate.code == "power_of_ten" && [0, 3, 5].into_iter().all(keeps) {
+        // products of inertia alone move no moment closer to the shape's
+        let Numbers { mass, center, moments } = inertial.numbers;
+        let new = &candidate.numbers;
+        let keeps = |k: usize| new.moments[k] == moments[k];
+        if is_possible && (new.mass, new.center) == (mass, center) && [0, 3, 5].into_iter().all(keeps) {
             return;
         }
         let G = inertial.inertia(&candidate.numbers);

@@ -127,6 +127,13 @@ fn the_worst_number_is_the_reason() {
     let expected = "izz is off by a factor of 10^2; as written, izz is about 100.2 times that of the link's shape, \
                     uniformly filled";
     assert_eq!(list[0].reason, expected);
+    // two rods with one fault: each is the twin of the other, and their products are no reason
+    for center in ["0 0 0", "0.001 0 0.01"] {
+        let rod = rod.replace("0 0 0", center).replace("0.00167", "5e-7");
+        let both = changes(&links(&[("l_rod", &rod), ("r_rod", &rod)]));
+        let expected = ("power_of_ten", "izz 5e-7 → 5e-6".to_string());
+        assert_eq!(both, [expected.clone(), expected], "{center}");
+    }
     let away = found(&arm(&SOUND.replace("0.02 0 0.15", "20 0 150"), LIMIT));
     assert!(away[0].reason.contains("the centre of mass is 149.7 m outside of the link's shape"), "{}", away[0].reason);
 }
