@@ -42,6 +42,28 @@ impl Finding {
     }
 }
 
+/// Faults that cause others, and what they cause.
+const CAUSES: [&str; 3] = ["short", "at_rest", "stuck"];
+const CONSEQUENCES: [&str; 9] = [
+    "velocity",
+    "swapped_joints",
+    "swapped_columns",
+    "sign",
+    "unit",
+    "causal_filter",
+    "position_jump",
+    "gravity",
+    "contradiction",
+];
+
+/// Leaves out what follows from a fault that is among the findings.
+pub(crate) fn keep_causes(findings: &mut Vec<Finding>) {
+    let is_cause = |finding: &Finding| finding.level == Level::Fault && CAUSES.contains(&finding.code);
+    if findings.iter().any(is_cause) {
+        findings.retain(|finding| !CONSEQUENCES.contains(&finding.code));
+    }
+}
+
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let level = match self.level {

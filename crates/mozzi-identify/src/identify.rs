@@ -2,7 +2,8 @@
 
 use crate::compress::{Compressed, Evidence, PARTS};
 use crate::estimate::least_squares::Decomposition;
-use crate::judgement::suspicion;
+use crate::finding::keep_causes;
+use crate::judgement::{rest, suspicion};
 use crate::predict::predict_some;
 use crate::setup::{Estimates, Limits, Setup, without_constraints};
 use crate::signals::{Filter, Samples, prepare};
@@ -135,11 +136,20 @@ pub fn identify<'m>(
     for log in logs {
         let filter = Filter { friction: options.choice.shape(), ..options.filter };
         let (of_log, mut more) = prepare(model, log, &filter)?;
-        if !options.choice.gains {
+        if options.choice.links {
+            more.extend(rest::check(model, log));
+        }
+        keep_causes(&mut more);
+        // a log that contradicts itself is not compared with the robot
+        if !options.choice.gains && !more.iter().any(|finding| finding.level == Level::Fault) {
             more.extend(suspicion::mistakes(model, &log.name, &of_log)?);
         }
         samples.push(of_log);
         findings.extend(more);
+    }
+    if options.choice.links {
+        findings.extend(rest::short(logs, &samples));
+        keep_causes(&mut findings);
     }
     match options.trust_log {
         true => demote(&mut findings),
@@ -226,6 +236,7 @@ impl<'m> Identification<'m> {
     pub fn validate(&self, log: &Log, filter: &Filter) -> Result<(Errors, Samples, Vec<Finding>), Error> {
         let filter = Filter { friction: self.setup.columns.choice.shape(), ..*filter };
         let (samples, mut findings) = prepare(self.setup.columns.model, log, &filter)?;
+        keep_causes(&mut findings);
         demote(&mut findings);
         let P = self.setup.columns.count();
         let compressed = [Compressed::new(&self.setup.columns, &self.setup.pattern, &samples, None)?];

@@ -311,7 +311,7 @@ impl Rows {
         }
         if let Some((from, to)) = gaps.first() {
             let more = if gaps.len() > 1 { format!(", and in {} further gaps", gaps.len() - 1) } else { String::new() };
-            let what = format!("{}: nothing was recorded between t = {from} and {to} s{more}", log.name);
+            let what = format!("{}: no rows can be used between t = {from} and {to} s{more}", log.name);
             findings.push(Finding::warning("gap", format!("{what}; the parts are filtered separately")));
         }
     }

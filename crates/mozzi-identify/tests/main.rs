@@ -8,3 +8,4 @@ mod real_logs;
 mod semidefinite;
 mod sensor;
 mod simulated;
+mod stuck;

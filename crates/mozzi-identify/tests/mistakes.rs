@@ -2,9 +2,8 @@
 
 use crate::common;
 
-use common::{cases, motion, with_forces};
+use common::{cases, edited, simulated};
 use mozzi::Model;
-use mozzi::random::Random;
 use mozzi_identify::judgement::judge;
 use mozzi_identify::signals::{Cutoff, Filter};
 use mozzi_identify::{Choice, Error, Log, Options, Sensor, identify};
@@ -23,37 +22,6 @@ fn codes(model: &Model, log: &Log, cutoff: f64) -> Vec<&'static str> {
     let all: Vec<_> = all.collect();
     all.iter().for_each(|finding| eprintln!("{finding}"));
     all.into_iter().map(|finding| finding.code).collect()
-}
-
-fn edited(log: &Log, n: usize, edit: impl Fn(&mut [f64], &mut [f64], &mut [f64])) -> Log {
-    let mut log = log.clone();
-    log.ddtheta = None;
-    let mut dtheta = log.dtheta.take().expect("velocities");
-    for k in 0..log.rows() {
-        let row = k * n..(k + 1) * n;
-        edit(&mut log.theta[row.clone()], &mut dtheta[row.clone()], &mut log.tau[row]);
-    }
-    log.dtheta = Some(dtheta);
-    log
-}
-
-/// A UR5 whose masses differ from the file's by up to 20 %.
-fn simulated() -> (Model, Log) {
-    let model = mozzi_urdf::open("ur5").expect("embedded").description.build().expect("sound");
-    let choice = Choice::all(Sensor::Link);
-    let columns = mozzi_identify::Columns::new(&model, choice.clone()).expect("columns");
-    let mut random = Random(4);
-    let mut x = columns.prior();
-    for first in columns.bodies() {
-        let factor = 1.0 + 0.2 * random.next();
-        x[first..first + 10].iter_mut().for_each(|x| *x *= factor);
-    }
-    for (k, unknown) in columns.unknowns.iter().enumerate().filter(|(_, u)| u.kind.is_positive()) {
-        x[k] = 1.0 + unknown.prior;
-    }
-    let log = motion(&model, 20.0, 100.0, 1.0, 3);
-    let log = with_forces(&log, &model, &choice, &x, &[0.3, 0.3, 0.2, 0.05, 0.05, 0.05], &mut random);
-    (model, log)
 }
 
 #[test]

@@ -4,6 +4,7 @@ pub mod determined;
 pub mod excitation;
 mod gains;
 pub mod residuals;
+pub(crate) mod rest;
 pub mod sensor;
 pub mod suspicion;
 pub mod velocities;

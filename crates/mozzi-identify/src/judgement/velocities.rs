@@ -1,6 +1,7 @@
 //! Compares logged velocities with differentiated positions: signs, units, mixed-up joints, velocities of another
 //! motion, and delays of filters that ran forwards only.
 
+use super::rest::is_at_rest;
 use crate::log::Rows;
 use crate::signals::butterworth::LowPass;
 use crate::signals::{derivative, resampled};
@@ -83,6 +84,11 @@ impl Signals {
     }
 }
 
+/// The positions of a joint in the rows that are used.
+fn positions(log: &Log, rows: &Rows, nq: usize, q: usize) -> Vec<f64> {
+    rows.runs.iter().flatten().map(|&row| log.theta[row * nq + q]).collect()
+}
+
 /// Faults and warnings about the velocities of a log.
 pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, trim: usize) -> Vec<Finding> {
     let (n, Some(dtheta)) = (model.n(), &log.dtheta) else { return Vec::new() };
@@ -94,7 +100,9 @@ pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, 
     let names: Vec<&str> = model.velocity_names().collect();
     let size = |x: &[f64]| dot(x, x).sqrt();
     let fastest = signals.slopes.iter().map(|x| size(x)).fold(0.0, f64::max);
-    let moves = |j: usize| size(&signals.slopes[j]) > SLOW * fastest;
+    let nq = model.nq();
+    let rests: Vec<bool> = places.iter().map(|place| is_at_rest(&positions(log, rows, nq, place.q))).collect();
+    let moves = |j: usize| size(&signals.slopes[j]) > SLOW * fastest && !rests[j];
     let (mut findings, mut lags, mut scales, mut rough) = (Vec::new(), (0.0, 0.0), Vec::new(), Vec::new());
     for j in (0..n).filter(|&j| moves(j)) {
         let (slope, logged, name) = (&signals.slopes[j], &signals.logged[j], names[j]);

@@ -1,8 +1,10 @@
 //! Mends what a log's driver got wrong in a way that leaves no doubt: the unit and the resolution of its clock,
-//! encoders that drop out, positions that wrap. What is in doubt is a fault.
+//! sensors that drop out or stay constant, spikes, positions that wrap. What is in doubt is a fault.
 
 mod clock;
 mod dropouts;
+mod spikes;
+mod stuck;
 mod wrap;
 
 use crate::{Error, Finding, Log};
@@ -23,7 +25,9 @@ pub fn mend<'l>(model: &Model, log: &'l Log) -> Result<(Cow<'l, Log>, Vec<Findin
     clock::unit(model, &mut log, &mut findings);
     clock::resolution(&mut log, &mut findings);
     dropouts::remove(model, &mut log, &mut findings);
+    spikes::remove(model, &mut log, &mut findings);
     wrap::unwrap(model, &mut log, &mut findings);
+    stuck::check(model, &mut log, &mut findings);
     Ok((log, findings))
 }
 
@@ -44,4 +48,20 @@ fn quantile(mut numbers: Vec<f64>, share: f64) -> f64 {
 /// The time of a row, or its number if it has none.
 fn at(log: &Log, row: usize) -> String {
     format!("t = {:.4} s, row {row} (counted from 0)", log.t[row])
+}
+
+impl Log {
+    /// Keeps some rows.
+    fn keep(&mut self, is_kept: &dyn Fn(usize) -> bool) {
+        let N = self.rows();
+        let keep = |table: &mut Vec<f64>| {
+            let width = table.len() / N.max(1);
+            let rows = (0..N).filter(|&row| is_kept(row));
+            *table = rows.flat_map(|row| table[row * width..][..width].to_vec()).collect();
+        };
+        let known = [&mut self.dtheta, &mut self.ddtheta, &mut self.target].into_iter().flatten();
+        [&mut self.theta, &mut self.tau].into_iter().chain(known).for_each(keep);
+        self.wrenches.iter_mut().for_each(|(_, table)| keep(table));
+        keep(&mut self.t);
+    }
 }

@@ -3,7 +3,7 @@
 
 use mozzi::Model;
 use mozzi::random::Random;
-use mozzi_identify::{Choice, Columns, Equations, Log};
+use mozzi_identify::{Choice, Columns, Equations, Log, Sensor};
 
 /// A random number of the normal distribution, of deviation 1.
 pub fn normal(random: &mut Random) -> f64 {
@@ -57,6 +57,38 @@ pub fn with_forces(log: &Log, model: &Model, choice: &Choice, x: &[f64], noise: 
         }
     }
     log
+}
+
+/// A log without accelerations, whose rows of positions, velocities and forces are changed.
+pub fn edited(log: &Log, n: usize, edit: impl Fn(&mut [f64], &mut [f64], &mut [f64])) -> Log {
+    let mut log = log.clone();
+    log.ddtheta = None;
+    let mut dtheta = log.dtheta.take().expect("velocities");
+    for k in 0..log.rows() {
+        let row = k * n..(k + 1) * n;
+        edit(&mut log.theta[row.clone()], &mut dtheta[row.clone()], &mut log.tau[row]);
+    }
+    log.dtheta = Some(dtheta);
+    log
+}
+
+/// A UR5 whose masses differ from the file's by up to 20 %.
+pub fn simulated() -> (Model, Log) {
+    let model = mozzi_urdf::open("ur5").expect("embedded").description.build().expect("sound");
+    let choice = Choice::all(Sensor::Link);
+    let columns = Columns::new(&model, choice.clone()).expect("columns");
+    let mut random = Random(4);
+    let mut x = columns.prior();
+    for first in columns.bodies() {
+        let factor = 1.0 + 0.2 * random.next();
+        x[first..first + 10].iter_mut().for_each(|x| *x *= factor);
+    }
+    for (k, unknown) in columns.unknowns.iter().enumerate().filter(|(_, u)| u.kind.is_positive()) {
+        x[k] = 1.0 + unknown.prior;
+    }
+    let log = motion(&model, 20.0, 100.0, 1.0, 3);
+    let log = with_forces(&log, &model, &choice, &x, &[0.3, 0.3, 0.2, 0.05, 0.05, 0.05], &mut random);
+    (model, log)
 }
 
 /// The folder of real logs, and that of the robots.
