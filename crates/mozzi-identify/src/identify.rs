@@ -142,7 +142,7 @@ pub fn identify<'m>(
         keep_causes(&mut more);
         // a log that contradicts itself is not compared with the robot
         if !options.choice.gains && !more.iter().any(|finding| finding.level == Level::Fault) {
-            more.extend(suspicion::mistakes(model, &log.name, &of_log)?);
+            more.extend(suspicion::check(model, log, &filter, &of_log)?);
         }
         samples.push(of_log);
         findings.extend(more);

@@ -1,19 +1,31 @@
 //! How well the robot's file explains one force, and the factor that would make it fit: currents, per mille of a rated
 //! torque, and torques before the gear differ from N m by a factor for each joint.
 
+use nalgebra::{Matrix3, Vector3};
+
 /// Joints count if their factor leaves at most this share of their variance unexplained.
 const EXPLAINED: f64 = 0.25;
 
 /// Factors between this and its inverse may be the file's own error.
 const NEAR_ONE: f64 = 2.5;
 
-/// τ = a τ̂ + d θ̇ + μ tanh(θ̇/0.05) + o, with d, μ ≥ 0.
+/// A file explains a force if it leaves at most this share of what friction, an armature and an offset leave.
+const WITH_SAY: f64 = 0.25;
+
+/// Factors that wrong masses in the file explain.
+const BY_MASSES: (f64, f64) = (0.7, 1.4);
+
+/// τ = a τ̂ + d θ̇ + μ tanh(θ̇/0.05) + I θ̈ + o, with d, μ, I ≥ 0.
 #[derive(Clone, Debug, Default)]
 pub struct Fit {
     count: f64,
-    /// Moments of (1, θ̇, tanh, τ̂, τ) about 0.
-    moments: [[f64; 5]; 5],
+    /// Moments of (1, θ̇, tanh, θ̈, τ̂, τ) about 0.
+    moments: [[f64; 6]; 6],
 }
+
+/// Places in the moments.
+const PREDICTED: usize = 4;
+const MEASURED: usize = 5;
 
 /// The factor of one force.
 #[derive(Clone, Copy, Debug)]
@@ -22,14 +34,16 @@ pub struct Gain {
     pub factor: f64,
     /// The share of the force's variance that is left.
     pub unexplained: f64,
+    /// The share that is left without τ̂.
+    pub without: f64,
 }
 
 impl Fit {
-    pub fn add(&mut self, tau: f64, predicted: f64, dtheta: f64) {
+    pub fn add(&mut self, tau: f64, predicted: f64, dtheta: f64, ddtheta: f64) {
         self.count += 1.0;
-        let x = [1.0, dtheta, (dtheta / 0.05).tanh(), predicted, tau];
-        for i in 0..5 {
-            for j in 0..5 {
+        let x = [1.0, dtheta, (dtheta / 0.05).tanh(), ddtheta, predicted, tau];
+        for i in 0..6 {
+            for j in 0..6 {
                 self.moments[i][j] += x[i] * x[j];
             }
         }
@@ -40,67 +54,93 @@ impl Fit {
         self.moments[i][j] - self.moments[0][i] * self.moments[0][j] / self.count
     }
 
+    /// The share of the force's variance that is left with a given a.
+    fn left(&self, a: f64) -> f64 {
+        let c = |i, j| self.covariance(i, j);
+        // of e = τ − a τ̂
+        let of_error = |i| c(i, MEASURED) - a * c(i, PREDICTED);
+        let square = of_error(MEASURED) - a * of_error(PREDICTED);
+        let A = core::array::from_fn(|i| core::array::from_fn(|j| c(i + 1, j + 1)));
+        self.share(losses(A, [1, 2, 3].map(of_error), square).0)
+    }
+
     /// The share of the force's variance that is left with a = 1.
     pub fn unexplained(&self) -> f64 {
-        let c = |i, j| self.covariance(i, j);
-        // of e = τ − τ̂
-        let of_error = |i| c(i, 4) - c(i, 3);
-        let square = c(4, 4) - 2.0 * c(3, 4) + c(3, 3);
-        self.share(friction([[c(1, 1), c(1, 2)], [c(1, 2), c(2, 2)]], [of_error(1), of_error(2)], square).0)
+        self.left(1.0)
+    }
+
+    /// The share that is left with the best a that a wrong mass may explain.
+    pub fn unexplained_by_masses(&self) -> f64 {
+        let (low, high) = BY_MASSES;
+        self.unexplained().min(self.left(self.gain().factor.clamp(low, high)))
     }
 
     /// The best a.
     pub fn gain(&self) -> Gain {
-        let c = |i, j| self.covariance(i, j);
-        if !(c(3, 3) > 0.0) {
-            return Gain { factor: 1.0, unexplained: 1.0 };
+        let (c, without) = (|i, j| self.covariance(i, j), self.left(0.0));
+        let square = c(PREDICTED, PREDICTED);
+        if !(square > 0.0) {
+            return Gain { factor: 1.0, unexplained: 1.0, without };
         }
-        // τ̂ is projected out, so that friction is fitted to what it leaves
-        let without = |i: usize, j: usize| c(i, j) - c(i, 3) * c(j, 3) / c(3, 3);
-        let A = [[without(1, 1), without(1, 2)], [without(1, 2), without(2, 2)]];
-        let (left, [d, mu]) = friction(A, [without(1, 4), without(2, 4)], without(4, 4));
-        let factor = (c(3, 4) - d * c(1, 3) - mu * c(2, 3)) / c(3, 3);
-        Gain { factor, unexplained: self.share(left).max(1e-12) }
+        // τ̂ is projected out, so that losses are fitted to what it leaves
+        let rest = |i: usize, j: usize| c(i, j) - c(i, PREDICTED) * c(j, PREDICTED) / square;
+        let A = core::array::from_fn(|i| core::array::from_fn(|j| rest(i + 1, j + 1)));
+        let (left, x) = losses(A, [1, 2, 3].map(|i| rest(i, MEASURED)), rest(MEASURED, MEASURED));
+        let others: f64 = (0..3).map(|i| x[i] * c(i + 1, PREDICTED)).sum();
+        let factor = (c(PREDICTED, MEASURED) - others) / square;
+        Gain { factor, unexplained: self.share(left).max(1e-12), without }
     }
 
     fn share(&self, left: f64) -> f64 {
-        let variance = self.covariance(4, 4);
+        let variance = self.covariance(MEASURED, MEASURED);
         if variance > 0.0 { (left / variance).max(0.0) } else { 1.0 }
     }
 }
 
-/// min ‖e − d θ̇ − μ s‖² with d, μ ≥ 0: what is left, and (d, μ).
-fn friction([[vv, vs], [_, ss]]: [[f64; 2]; 2], [ve, se]: [f64; 2], ee: f64) -> (f64, [f64; 2]) {
-    let mut best = (ee, [0.0, 0.0]);
-    let mut try_one = |d: f64, mu: f64| {
-        let left = ee - 2.0 * (d * ve + mu * se) + d * d * vv + 2.0 * d * mu * vs + mu * mu * ss;
-        if d >= 0.0 && mu >= 0.0 && left < best.0 {
-            best = (left, [d, mu]);
+impl Gain {
+    /// Whether the file's prediction, and not friction alone, explains the force.
+    fn has_say(&self) -> bool {
+        self.unexplained < EXPLAINED && self.unexplained < WITH_SAY * self.without
+    }
+}
+
+/// min ‖e − Σ x_i s_i‖² with x ≥ 0, of the normal equations A x = b and ‖e‖²: what is left, and x.
+fn losses(A: [[f64; 3]; 3], b: [f64; 3], square: f64) -> (f64, [f64; 3]) {
+    let mut best = (square, [0.0; 3]);
+    for subset in 1..8_usize {
+        let is_in = |i: usize| subset >> i & 1 == 1;
+        if (0..3).any(|i| is_in(i) && !(A[i][i] > 0.0)) {
+            continue;
         }
-    };
-    if vv > 0.0 {
-        try_one(ve / vv, 0.0);
-    }
-    if ss > 0.0 {
-        try_one(0.0, se / ss);
-    }
-    let det = vv * ss - vs * vs;
-    if det > 1e-9 * vv * ss {
-        try_one((ve * ss - se * vs) / det, (se * vv - ve * vs) / det);
+        // of unit diagonal, so that the determinant is that of correlations
+        let size = |i: usize| if is_in(i) { A[i][i].sqrt() } else { 1.0 };
+        let scaled = Matrix3::from_fn(|i, j| match (i == j, is_in(i) && is_in(j)) {
+            (true, _) => 1.0,
+            (false, true) => A[i][j] / (size(i) * size(j)),
+            _ => 0.0,
+        });
+        let right = Vector3::from_fn(|i, _| if is_in(i) { b[i] / size(i) } else { 0.0 });
+        let Some(y) = Some(scaled).filter(|m| m.determinant() > 1e-9).and_then(|m| m.lu().solve(&right)) else {
+            continue;
+        };
+        let left = square - right.dot(&y);
+        if y.iter().all(|y| *y >= 0.0) && left < best.0 {
+            best = (left, core::array::from_fn(|i| y[i] / size(i)));
+        }
     }
     best
 }
 
 /// Whether all forces that the file explains are far from N m.
 pub fn is_scale(gains: &[Gain]) -> bool {
-    let with_say: Vec<&Gain> = gains.iter().filter(|gain| gain.unexplained < EXPLAINED).collect();
+    let with_say: Vec<&Gain> = gains.iter().filter(|gain| gain.has_say()).collect();
     let is_far = |gain: &&Gain| gain.factor > NEAR_ONE || (0.0..1.0 / NEAR_ONE).contains(&gain.factor);
-    2 * with_say.len() > gains.len() && with_say.iter().all(is_far)
+    3 * with_say.len() >= gains.len() && !with_say.is_empty() && with_say.iter().all(is_far)
 }
 
 /// An explanation of the factors.
 pub fn text(gains: &[Gain], names: &[&str]) -> String {
-    let with_say = || gains.iter().zip(names).filter(|(gain, _)| gain.unexplained < EXPLAINED);
+    let with_say = || gains.iter().zip(names).filter(|(gain, _)| gain.has_say());
     let list: Vec<String> = with_say().take(8).map(|(gain, name)| format!("{name} {:.4}", gain.factor)).collect();
     let (low, high) =
         with_say().fold((f64::MAX, 0.0_f64), |(a, b), (gain, _)| (a.min(gain.factor), b.max(gain.factor)));
@@ -132,13 +172,15 @@ mod tests {
         let mut fit = Fit::default();
         for k in 0..400 {
             let t = 0.05 * f64::from(k);
-            let (dtheta, predicted) = ((1.3 * t).cos(), 20.0 * t.sin() + 3.0 * (2.7 * t).cos());
-            fit.add(0.1 * (predicted + 0.5 * dtheta + 0.3 * (dtheta / 0.05).tanh()) + 0.02, predicted, dtheta);
+            let (dtheta, ddtheta) = ((1.3 * t).cos(), -1.3 * (1.3 * t).sin());
+            let predicted = 20.0 * t.sin() + 3.0 * (2.7 * t).cos();
+            let losses = 0.5 * dtheta + 0.3 * (dtheta / 0.05).tanh() + 0.2 * ddtheta;
+            fit.add(0.1 * (predicted + losses) + 0.02, predicted, dtheta, ddtheta);
         }
         let gain = fit.gain();
         assert!((gain.factor - 0.1).abs() < 1e-9 && gain.unexplained < 1e-9, "{gain:?}");
         assert!(fit.unexplained() > 0.5);
-        assert!(is_scale(&[gain]) && !is_scale(&[Gain { factor: 1.2, unexplained: 0.01 }]));
+        assert!(is_scale(&[gain]) && !is_scale(&[Gain { factor: 1.2, ..gain }]));
         assert!(text(&[gain], &["elbow"]).contains("currents"));
     }
 }

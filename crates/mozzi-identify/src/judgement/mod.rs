@@ -3,6 +3,7 @@
 pub mod determined;
 pub mod excitation;
 mod gains;
+mod mistake;
 pub mod residuals;
 pub(crate) mod rest;
 pub mod sensor;

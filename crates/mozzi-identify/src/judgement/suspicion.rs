@@ -1,8 +1,9 @@
 //! Mistakes in a log that the robot's own values reveal: joints mixed up, signs, units, the direction of gravity.
 
 use super::gains::{self, Fit, Gain};
-use crate::signals::Samples;
-use crate::{Error, Finding};
+use super::mistake::Mistake;
+use crate::signals::{Cutoff, Filter, Samples, prepare};
+use crate::{Error, Finding, Level, Log};
 use mozzi::quantities::{InverseDynamics, Query};
 use mozzi::{Environment, Freedom, Model, Vec3, fast};
 
@@ -10,140 +11,122 @@ use mozzi::{Environment, Freedom, Model, Vec3, fast};
 const CLEAR: f64 = 1.5;
 
 /// By this much before it is a fault.
-const SURE: f64 = 2.5;
+const SURE: f64 = 2.0;
 
-/// The largest share of the variance, %, that is unexplained once the mistake is undone, of a fault.
-const EXPLAINED: f64 = 20.0;
+/// A mistake explains the forces if it, and masses of the file that are wrong by a third, leave at most this share of
+/// their variance unexplained (geometric mean),
+const EXPLAINED: f64 = 0.05;
+
+/// and if the logarithms of mistakes of other kinds are larger by this much.
+const APART: f64 = 0.5;
+
+/// Above this share the file predicts so badly that no robot of this file has recorded the log.
+const ABSURD: f64 = 10.0;
 
 /// Samples that are compared.
 const COMPARED: usize = 400;
 
-/// A mistake that may have been made.
-#[derive(Clone, Debug)]
-enum Mistake {
-    None,
-    SwappedForces(usize, usize),
-    SwappedMotions(usize, usize),
-    SwappedJoints(usize, usize),
-    ForceSign(usize),
-    MotionSign(usize),
-    JointSign(usize),
-    Degrees,
-    Gravity([f64; 3]),
-    AllForceSigns,
-}
-
-/// Compares the log with the robot's own prediction under each possible mistake, and reports the one that explains it
-/// far better than none, if nearly all of the forces are explained then: two mistakes at once are not one. Only
-/// joints of one axis are compared.
+/// The mistakes of a log that its filtered samples reveal.
 ///
 /// # Errors
 /// [`Error::Model`].
-pub fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>, Error> {
+pub fn check(model: &Model, log: &Log, filter: &Filter, samples: &Samples) -> Result<Vec<Finding>, Error> {
+    let found = mistakes(model, &log.name, samples)?;
+    let is_absurd = found.iter().any(|finding| finding.code == "contradiction" && finding.level == Level::Fault);
+    if !is_absurd || filter.cutoff != Cutoff::Automatic {
+        return Ok(found);
+    }
+    // degrees spoil the cut-off that follows the predicted forces
+    let mut converted = log.clone();
+    let rates = [&mut converted.dtheta, &mut converted.ddtheta].into_iter().flatten();
+    let all = [&mut converted.theta].into_iter().chain(rates);
+    all.for_each(|table| table.iter_mut().for_each(|x| *x = x.to_radians()));
+    let Ok((samples, _)) = prepare(model, &converted, filter) else { return Ok(found) };
+    let mut comparison = Comparison::new(model, &samples);
+    if !comparison.is_explained(&Mistake::None) {
+        return Ok(found);
+    }
+    let share = (comparison.score(&Mistake::None) / model.n() as f64).exp();
+    let text = format!(
+        "{}: {}; then the robot's own values leave {:.2} % of each force's variance unexplained (geometric mean)",
+        log.name,
+        Mistake::Degrees.text(model),
+        100.0 * share
+    );
+    Ok(vec![Finding::fault(Mistake::Degrees.code(), text)])
+}
+
+/// Compares the log with the robot's own prediction under each possible mistake, and reports the one that explains it
+/// far better than none and than others, if nearly all of the forces are explained then: two mistakes at once are not
+/// one. Only joints of one axis are compared.
+///
+/// # Errors
+/// [`Error::Model`].
+fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>, Error> {
     let places = model.configuration_space().places();
     if places.iter().any(|place| place.freedom != Freedom::One) || samples.count() < 20 {
         return Ok(Vec::new());
     }
-    let n = model.n();
     let names: Vec<&str> = model.velocity_names().collect();
     let mut comparison = Comparison::new(model, samples);
     let as_it_is = comparison.score(&Mistake::None);
-    let (mut best, mut least) = (Mistake::None, as_it_is);
-    for mistake in candidates(model) {
-        let score = comparison.score(&mistake);
-        if score < least {
-            (best, least) = (mistake, score);
-        }
-    }
-    let share = |score: f64| 100.0 * (score / n as f64).exp();
-    let gains = comparison.gains();
-    let scaled: f64 = gains.iter().map(|gain| gain.unexplained.ln()).sum();
-    // a factor for each force explains more than any single mistake: the unit
-    let is_scale = gains::is_scale(&gains) && as_it_is - scaled > CLEAR && scaled < least.min(as_it_is - CLEAR) + 0.5;
+    let all: Vec<(Mistake, f64)> = Mistake::all(model, comparison.limits.is_some())
+        .into_iter()
+        .map(|mistake| {
+            let score = comparison.score(&mistake);
+            (mistake, score)
+        })
+        .collect();
+    let Some((best, least)) = all.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(Vec::new()) };
+    let (best, least) = (best.clone(), least.min(as_it_is));
+    let of_other_kind = all.iter().filter(|(mistake, _)| mistake.code() != best.code()).map(|(_, score)| *score);
+    let is_apart = of_other_kind.fold(f64::MAX, f64::min) - least > APART;
+    let share = |score: f64| (score / names.len() as f64).exp();
     let evidence = |score: f64| {
         format!(
             "then the robot's own values leave {:.2} % of each force's variance unexplained, now {:.2} % (geometric means)",
-            share(score),
-            share(as_it_is)
+            100.0 * share(score),
+            100.0 * share(as_it_is)
         )
     };
-    if is_scale {
-        return Ok(vec![Finding::fault(
-            "unit",
-            format!("{log}: {}; {}", gains::text(&gains, &names), evidence(scaled)),
-        )]);
+    let is_explained = comparison.is_explained(&best);
+    let (gains, is_rated) = (comparison.gains(), matches!(best, Mistake::Rated(_)) && is_explained);
+    let scaled: f64 = gains.iter().map(|gain| gain.unexplained.ln()).sum();
+    // a factor for each force explains more than any single mistake: the unit
+    let is_better = as_it_is - scaled > CLEAR && scaled < least.min(as_it_is - CLEAR) + APART;
+    if gains::is_scale(&gains) && is_better && !is_rated {
+        let text = format!("{log}: {}; {}", gains::text(&gains, &names), evidence(scaled));
+        return Ok(vec![Finding::fault("unit", text)]);
     }
-    if !(as_it_is - least > CLEAR) {
-        return Ok(Vec::new());
-    }
-    let (code, text) = match best {
-        Mistake::None => return Ok(Vec::new()),
-        Mistake::SwappedForces(a, b) => {
-            ("swapped_joints", format!("the forces of {} and {} seem to be swapped", names[a], names[b]))
+    let gain = as_it_is - least;
+    Ok(match () {
+        () if gain > CLEAR && is_explained && is_apart => {
+            let level = if gain > SURE { Level::Fault } else { Level::Warning };
+            let text = format!("{log}: {}; {}", best.text(model), evidence(least));
+            vec![Finding { code: best.code(), level, text }]
         }
-        Mistake::SwappedMotions(a, b) => {
-            ("swapped_joints", format!("the positions of {} and {} seem to be swapped", names[a], names[b]))
+        () if gain > CLEAR && share(as_it_is) > EXPLAINED || share(as_it_is) > ABSURD => {
+            let level = if share(as_it_is) > ABSURD { Level::Fault } else { Level::Warning };
+            let by_joint = comparison.unexplained().into_iter().zip(&names);
+            let list: Vec<String> = by_joint.map(|(x, name)| format!("{name} {:.0} %", 100.0 * x)).collect();
+            let text = format!(
+                "{log}: positions, velocities and forces do not fit the robot's file, and no single mistake explains it: \
+                 its own values leave of each force's variance unexplained: {}; columns, signs or units of several \
+                 joints, positions of the motor's side, or another robot",
+                list.join(", ")
+            );
+            vec![Finding { code: "contradiction", level, text }]
         }
-        Mistake::SwappedJoints(a, b) => {
-            ("swapped_joints", format!("the columns of {} and {} seem to be swapped", names[a], names[b]))
-        }
-        Mistake::ForceSign(a) => ("sign", format!("the force of {} seems to have the opposite sign", names[a])),
-        Mistake::MotionSign(a) => {
-            ("sign", format!("position and velocity of {} seem to have the opposite sign", names[a]))
-        }
-        Mistake::JointSign(a) => ("sign", format!("all columns of {} seem to have the opposite sign", names[a])),
-        Mistake::AllForceSigns => ("sign", "all forces seem to have the opposite sign".to_string()),
-        Mistake::Degrees => (
-            "unit",
-            "positions and velocities seem to be in degrees, expected rad; name them q1_deg, qd1_deg/s".to_string(),
-        ),
-        Mistake::Gravity(g) => {
-            ("gravity", format!("gravity seems to be {g:?} m/s² in the base frame, not {:?}", model.gravity().0))
-        }
-    };
-    let text = format!("{log}: {text}; {}", evidence(least));
-    let is_sure = as_it_is - least > SURE && share(least) < EXPLAINED;
-    // what explains little is no explanation
-    Ok(match is_sure {
-        true => vec![Finding::fault(code, text)],
-        false if share(least) < 2.0 * EXPLAINED => vec![Finding::warning(code, text)],
-        false => vec![Finding::warning(
-            "contradiction",
-            format!(
-                "{log}: the robot's own values leave {:.0} % of each force's variance unexplained, and no single mistake \
-                 explains it: columns, signs or units of several joints, or the robot's file",
-                share(as_it_is)
-            ),
-        )],
+        () => Vec::new(),
     })
-}
-
-/// Every mistake that is tried.
-fn candidates(model: &Model) -> Vec<Mistake> {
-    let n = model.n();
-    let mut all = Vec::new();
-    for a in 0..n {
-        all.extend([Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a)]);
-        for b in a + 1..n {
-            all.extend([Mistake::SwappedForces(a, b), Mistake::SwappedMotions(a, b), Mistake::SwappedJoints(a, b)]);
-        }
-    }
-    all.extend([Mistake::Degrees, Mistake::AllForceSigns]);
-    let g = model.gravity().0;
-    let size = Vec3(g).norm();
-    if size > 0.0 {
-        let directions = (0..3).flat_map(|axis| {
-            [1.0, -1.0].map(|sign| core::array::from_fn(|i| if i == axis { sign * size } else { 0.0 }))
-        });
-        all.extend(directions.filter(|d: &[f64; 3]| Vec3(*d).dot(Vec3(g)) < 0.99 * size * size).map(Mistake::Gravity));
-    }
-    all
 }
 
 struct Comparison<'a> {
     model: &'a Model,
     samples: &'a Samples,
     rows: Vec<usize>,
+    /// Effort limits of all joints, if all have one.
+    limits: Option<Vec<f64>>,
     workspace: fast::Workspace,
 }
 
@@ -151,12 +134,29 @@ impl<'a> Comparison<'a> {
     fn new(model: &'a Model, samples: &'a Samples) -> Self {
         let step = samples.count().div_ceil(COMPARED);
         let rows = (0..samples.count()).step_by(step).collect();
-        Comparison { model, samples, rows, workspace: fast::Workspace::new(model) }
+        let limit = |name: &str| {
+            let joint = model.joints().find(|joint| joint.name == name)?;
+            joint.limits.effort.filter(|limit| *limit > 0.0 && limit.is_finite())
+        };
+        let limits = model.velocity_names().map(limit).collect();
+        Comparison { model, samples, rows, limits, workspace: fast::Workspace::new(model) }
     }
 
-    /// Σ_j log of the share of force j that the robot, with friction and an offset fitted, does not predict.
+    /// Σ_j log of the share of force j that the robot, with friction, armature and an offset fitted, does not predict.
     fn score(&mut self, mistake: &Mistake) -> f64 {
         self.sums(mistake).iter().map(|fit| fit.unexplained().max(1e-12).ln()).sum()
+    }
+
+    /// Whether nearly nothing is left once the mistake is undone.
+    fn is_explained(&mut self, mistake: &Mistake) -> bool {
+        let sums = self.sums(mistake);
+        let left: f64 = sums.iter().map(|fit| fit.unexplained_by_masses().max(1e-12).ln()).sum();
+        (left / sums.len() as f64).exp() < EXPLAINED
+    }
+
+    /// The share of each force that the file does not predict.
+    fn unexplained(&mut self) -> Vec<f64> {
+        self.sums(&Mistake::None).iter().map(Fit::unexplained).collect()
     }
 
     /// The factor of each force that fits best.
@@ -167,44 +167,26 @@ impl<'a> Comparison<'a> {
     fn sums(&mut self, mistake: &Mistake) -> Vec<Fit> {
         let n = self.model.n();
         let query = Query::from(InverseDynamics);
-        let mut environment = self.model.environment();
-        if let Mistake::Gravity(g) = mistake {
-            environment = Environment { gravity: Vec3(*g), ..environment };
-        }
+        let environment = self.model.environment();
+        let environment = match mistake {
+            Mistake::Gravity(g) => Environment { gravity: Vec3(*g), ..environment },
+            Mistake::NoGravity => Environment { gravity: Vec3([0.0; 3]), ..environment },
+            _ => environment,
+        };
         let mut sums = vec![Fit::default(); n];
         let mut predicted = vec![0.0; n];
         for &k in &self.rows {
             let row = |table: &[f64]| table[k * n..(k + 1) * n].to_vec();
             let mut motion = [row(&self.samples.theta), row(&self.samples.dtheta), row(&self.samples.ddtheta)];
             let mut tau = row(&self.samples.tau);
-            correct(mistake, &mut motion, &mut tau);
+            mistake.undo(&mut motion, &mut tau, self.limits.as_deref().unwrap_or_default());
             let [theta, dtheta, ddtheta] = &motion;
             let inputs: [&[f64]; 3] = [theta, dtheta, ddtheta];
             fast::evaluate(&query, self.model, &inputs, &environment, &mut self.workspace, &mut [&mut predicted]);
             for j in 0..n {
-                sums[j].add(tau[j], predicted[j], dtheta[j]);
+                sums[j].add(tau[j], predicted[j], dtheta[j], ddtheta[j]);
             }
         }
         sums
-    }
-}
-
-fn correct(mistake: &Mistake, motion: &mut [Vec<f64>; 3], tau: &mut [f64]) {
-    match *mistake {
-        Mistake::None | Mistake::Gravity(_) => {}
-        Mistake::SwappedForces(a, b) => tau.swap(a, b),
-        Mistake::SwappedMotions(a, b) => motion.iter_mut().for_each(|x| x.swap(a, b)),
-        Mistake::SwappedJoints(a, b) => {
-            motion.iter_mut().for_each(|x| x.swap(a, b));
-            tau.swap(a, b);
-        }
-        Mistake::ForceSign(a) => tau[a] = -tau[a],
-        Mistake::MotionSign(a) => motion.iter_mut().for_each(|x| x[a] = -x[a]),
-        Mistake::JointSign(a) => {
-            motion.iter_mut().for_each(|x| x[a] = -x[a]);
-            tau[a] = -tau[a];
-        }
-        Mistake::AllForceSigns => tau.iter_mut().for_each(|x| *x = -*x),
-        Mistake::Degrees => motion.iter_mut().flatten().for_each(|x| *x = x.to_radians()),
     }
 }

@@ -1,0 +1,142 @@
+//! Mistakes that may have been made in a log, each undone in a sample.
+
+use mozzi::{Model, Vec3};
+
+/// A mistake that may have been made.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mistake {
+    None,
+    SwappedForces(usize, usize),
+    SwappedMotions(usize, usize),
+    SwappedJoints(usize, usize),
+    /// The joints in the reverse order.
+    Reversed,
+    ForceSign(usize),
+    MotionSign(usize),
+    JointSign(usize),
+    AllForceSigns,
+    Degrees,
+    JointDegrees(usize),
+    /// Forces are shares of the effort limits, this many to one.
+    Rated(f64),
+    Gravity([f64; 3]),
+    /// Forces without those of gravity.
+    NoGravity,
+}
+
+impl Mistake {
+    /// Every mistake that is tried.
+    pub fn all(model: &Model, has_limits: bool) -> Vec<Mistake> {
+        let n = model.n();
+        let mut all = Vec::new();
+        for a in 0..n {
+            let of_one =
+                [Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a), Mistake::JointDegrees(a)];
+            all.extend(of_one);
+            for b in a + 1..n {
+                all.extend([Mistake::SwappedForces(a, b), Mistake::SwappedMotions(a, b), Mistake::SwappedJoints(a, b)]);
+            }
+        }
+        all.extend([Mistake::Degrees, Mistake::AllForceSigns]);
+        if n > 2 {
+            all.push(Mistake::Reversed);
+        }
+        if has_limits {
+            all.extend([100.0, 1000.0].map(Mistake::Rated));
+        }
+        let g = model.gravity().0;
+        let size = Vec3(g).norm();
+        if size > 0.0 {
+            let directions = (0..3).flat_map(|axis| {
+                [1.0, -1.0].map(|sign| core::array::from_fn(|i| if i == axis { sign * size } else { 0.0 }))
+            });
+            let others = directions.filter(|d: &[f64; 3]| Vec3(*d).dot(Vec3(g)) < 0.99 * size * size);
+            all.extend(others.map(Mistake::Gravity));
+            all.push(Mistake::NoGravity);
+        }
+        all
+    }
+
+    /// Undoes the mistake in one sample: positions, velocities and accelerations, and forces.
+    pub fn undo(&self, motion: &mut [Vec<f64>; 3], tau: &mut [f64], limits: &[f64]) {
+        match *self {
+            Mistake::None | Mistake::Gravity(_) | Mistake::NoGravity => {}
+            Mistake::SwappedForces(a, b) => tau.swap(a, b),
+            Mistake::SwappedMotions(a, b) => motion.iter_mut().for_each(|x| x.swap(a, b)),
+            Mistake::SwappedJoints(a, b) => {
+                motion.iter_mut().for_each(|x| x.swap(a, b));
+                tau.swap(a, b);
+            }
+            Mistake::Reversed => {
+                motion.iter_mut().for_each(|x| x.reverse());
+                tau.reverse();
+            }
+            Mistake::ForceSign(a) => tau[a] = -tau[a],
+            Mistake::MotionSign(a) => motion.iter_mut().for_each(|x| x[a] = -x[a]),
+            Mistake::JointSign(a) => {
+                motion.iter_mut().for_each(|x| x[a] = -x[a]);
+                tau[a] = -tau[a];
+            }
+            Mistake::AllForceSigns => tau.iter_mut().for_each(|x| *x = -*x),
+            Mistake::Degrees => motion.iter_mut().flatten().for_each(|x| *x = x.to_radians()),
+            Mistake::JointDegrees(a) => motion.iter_mut().for_each(|x| x[a] = x[a].to_radians()),
+            Mistake::Rated(whole) => tau.iter_mut().zip(limits).for_each(|(x, limit)| *x *= limit / whole),
+        }
+    }
+
+    /// The finding's code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Mistake::None => "",
+            Mistake::SwappedForces(..) | Mistake::SwappedMotions(..) | Mistake::SwappedJoints(..) => "swapped_joints",
+            Mistake::Reversed => "swapped_joints",
+            Mistake::ForceSign(_) | Mistake::MotionSign(_) | Mistake::JointSign(_) | Mistake::AllForceSigns => "sign",
+            Mistake::Degrees | Mistake::JointDegrees(_) | Mistake::Rated(_) => "unit",
+            Mistake::Gravity(_) | Mistake::NoGravity => "gravity",
+        }
+    }
+
+    /// What was done, with the remedy if it is not obvious.
+    pub fn text(&self, model: &Model) -> String {
+        let names: Vec<&str> = model.velocity_names().collect();
+        match *self {
+            Mistake::None => String::new(),
+            Mistake::SwappedForces(a, b) => format!("the forces of {} and {} seem to be swapped", names[a], names[b]),
+            Mistake::SwappedMotions(a, b) => {
+                format!("the positions of {} and {} seem to be swapped", names[a], names[b])
+            }
+            Mistake::SwappedJoints(a, b) => format!("the columns of {} and {} seem to be swapped", names[a], names[b]),
+            Mistake::Reversed => format!(
+                "the joints seem to be in the reverse order, from {} to {}",
+                names.last().copied().unwrap_or_default(),
+                names.first().copied().unwrap_or_default()
+            ),
+            Mistake::ForceSign(a) => format!("the force of {} seems to have the opposite sign", names[a]),
+            Mistake::MotionSign(a) => {
+                format!("position and velocity of {} seem to have the opposite sign", names[a])
+            }
+            Mistake::JointSign(a) => format!("all columns of {} seem to have the opposite sign", names[a]),
+            Mistake::AllForceSigns => "all forces seem to have the opposite sign".to_string(),
+            Mistake::Degrees => {
+                "positions and velocities seem to be in degrees, expected rad; name them q1_deg, qd1_deg/s".to_string()
+            }
+            Mistake::JointDegrees(a) => format!(
+                "position and velocity of {} seem to be in degrees, expected rad; name its columns q_deg, qd_deg/s",
+                names[a]
+            ),
+            Mistake::Rated(whole) => format!(
+                "forces are not in N m: they seem to be in {} of the rated torque, the file's effort limit; multiply \
+                 each by limit/{whole}, or log N m",
+                if whole < 500.0 { "per cent" } else { "per mille" }
+            ),
+            Mistake::Gravity(g) => {
+                format!("gravity seems to be {g:?} m/s² in the base frame, not {:?}", model.gravity().0)
+            }
+            Mistake::NoGravity => {
+                "forces seem to lack those of gravity, as those of drivers that compensate it; log the \
+                                   motors' own torques, or add g(θ) of the robot's file"
+                    .to_string()
+            }
+        }
+    }
+}
