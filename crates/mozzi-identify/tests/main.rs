@@ -9,3 +9,4 @@ mod semidefinite;
 mod sensor;
 mod simulated;
 mod stuck;
+mod suspicion;

@@ -3,6 +3,7 @@
 pub mod determined;
 pub mod excitation;
 mod gains;
+mod lag;
 mod mistake;
 pub mod residuals;
 pub(crate) mod rest;
@@ -10,7 +11,8 @@ pub mod sensor;
 pub mod suspicion;
 pub mod velocities;
 
-use crate::{Error, Finding, Identification, Kind, Log, Servo, servos};
+use crate::signals::Samples;
+use crate::{Columns, Error, Finding, Identification, Kind, Log, Servo, servos};
 use determined::{Standing, standings};
 use excitation::Parameter;
 use residuals::Residual;
@@ -45,9 +47,10 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
     for (samples, log) in found.samples.iter().zip(logs) {
         let of_log = found.predicted_unseen(samples)?;
         let all: Vec<Residual> = (0..n).map(|j| Residual::new(names[j], j, n, samples, &of_log)).collect();
-        findings.extend(lag(&log.name, &all, 1.0 / samples.rate));
+        findings.extend(lag::check(&log.name, &all, 1.0 / samples.rate));
         findings.extend(colour(&log.name, &all));
         findings.extend(unexplained(&log.name, &all));
+        findings.extend(blunted(&log.name, samples, columns));
         residuals.push(all);
         predicted.push(of_log);
     }
@@ -138,26 +141,17 @@ fn apparent(found: &Identification<'_>) -> Option<Finding> {
     })
 }
 
-/// A common lag of all forces, where it is clear: torques that were filtered forwards only.
-fn lag(log: &str, residuals: &[Residual], step: f64) -> Option<Finding> {
-    let weight = |r: &Residual| 1.0 / (r.lag_deviation * r.lag_deviation);
-    let total: f64 = residuals.iter().map(weight).sum();
-    let mean = residuals.iter().map(|r| weight(r) * r.lag).sum::<f64>() / total;
-    let alike = residuals.iter().filter(|r| r.lag * mean > 0.0).count();
-    let is_clear =
-        mean.abs() > (0.5 * step).max(3e-3) && mean.abs() > 5.0 / total.sqrt() && 4 * alike >= 3 * residuals.len();
-    is_clear.then(|| {
-        let when = if mean > 0.0 { "later" } else { "earlier" };
-        Finding::warning(
-            "causal_filter",
-            format!(
-                "{log}: forces come {:.1} ms {when} than predicted: a causal filter or a clock, or \
-                 friction with memory; \
-                 log them unfiltered",
-                1e3 * mean.abs()
-            ),
-        )
-    })
+/// Friction of velocities that were not logged.
+fn blunted(log: &str, samples: &Samples, columns: &Columns<'_>) -> Option<Finding> {
+    let has_friction = columns.unknowns.iter().any(|unknown| matches!(unknown.kind, Kind::Coulomb(_)));
+    let cutoff = samples.cutoff.filter(|_| samples.coulomb.is_none() && has_friction)?;
+    Some(Finding::note(
+        "no_velocities",
+        format!(
+            "{log}: without logged velocities, the cut-off of {cutoff:.3} Hz blunts the jump of dry friction at reversals, \
+             whose μ comes out too small; log velocities, or raise --cutoff"
+        ),
+    ))
 }
 
 /// Residuals that are no noise make deviations too small.
@@ -165,6 +159,7 @@ fn colour(log: &str, residuals: &[Residual]) -> Option<Finding> {
     const HIGH: f64 = 0.5;
     let coloured: Vec<&Residual> = residuals.iter().filter(|r| r.autocorrelation > HIGH).collect();
     let most = coloured.iter().map(|r| r.autocorrelation).fold(0.0, f64::max).min(0.99);
+    let factor = coloured.iter().map(|r| r.colour()).fold(1.0, f64::max);
     (!coloured.is_empty()).then(|| {
         let names: Vec<&str> = coloured.iter().map(|r| r.name.as_str()).collect();
         Finding::note(
@@ -172,9 +167,8 @@ fn colour(log: &str, residuals: &[Residual]) -> Option<Finding> {
             format!(
                 "{log}: residuals of {} are no noise but effects that the model lacks (autocorrelation \
                  up to {most:.2}): \
-                 standard deviations are too small, by up to {:.0} times",
-                names.join(", "),
-                ((1.0 + most) / (1.0 - most)).sqrt()
+                 standard deviations are too small, by up to {factor:.0} times",
+                names.join(", ")
             ),
         )
     })

@@ -51,6 +51,14 @@ impl Residual {
     }
 }
 
+impl Residual {
+    /// By how much standard deviations that take residuals for noise are too small.
+    pub fn colour(&self) -> f64 {
+        let alike = self.autocorrelation.clamp(0.0, 0.99);
+        ((1.0 + alike) / (1.0 - alike)).sqrt()
+    }
+}
+
 /// The correlation of a signal with itself `lag` samples later.
 pub fn autocorrelation(x: &[f64], lag: usize) -> f64 {
     let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;

@@ -1,0 +1,137 @@
+//! Mistakes that the robot's file reveals: gravity that is compensated, units of forces, delays.
+
+use crate::common;
+
+use common::{cases, edited, simulated};
+use mozzi::Model;
+use mozzi_identify::judgement::judge;
+use mozzi_identify::signals::{Cutoff, Filter};
+use mozzi_identify::{Choice, Finding, Level, Log, Options, Sensor, identify};
+
+/// What is reported about a log, notes apart, if faults do not stop it.
+fn findings(model: &Model, log: &Log, cutoff: Cutoff) -> Vec<Finding> {
+    let filter = Filter { cutoff, ..Filter::default() };
+    let options = Options { filter, choice: Choice::all(Sensor::Link), trust_log: true, ..Options::default() };
+    let found = identify(model, std::slice::from_ref(log), &options, &|| false).expect("an identification");
+    let judged = judge(&found, std::slice::from_ref(log)).expect("a judgement");
+    let all: Vec<Finding> = found.findings.into_iter().chain(judged.findings).collect();
+    all.into_iter().filter(|finding| finding.level > Level::Note).collect()
+}
+
+/// The fault's code and text of a log that is refused for one reason.
+fn fault(model: &Model, log: &Log, cutoff: Cutoff) -> String {
+    let options = Options { filter: Filter { cutoff, ..Filter::default() }, ..Options::default() };
+    match identify(model, std::slice::from_ref(log), &options, &|| false) {
+        Err(mozzi_identify::Error::Fault { faults }) if faults.len() == 1 => faults[0].clone(),
+        Err(error) => panic!("{error}"),
+        Ok(found) => panic!("accepted: {:?}", found.findings),
+    }
+}
+
+const CUTOFF: Cutoff = Cutoff::Hz(8.0);
+
+#[test]
+fn a_clean_log_has_no_warnings() {
+    let (model, log) = simulated();
+    let clean = edited(&log, model.n(), |_, _, _| {});
+    assert_eq!(findings(&model, &clean, CUTOFF), Vec::new());
+    assert_eq!(findings(&model, &clean, Cutoff::Automatic), Vec::new());
+}
+
+#[test]
+fn forces_without_gravity_are_noticed() {
+    let (model, log) = simulated();
+    let (n, mut log) = (model.n(), edited(&log, model.n(), |_, _, _| {}));
+    for row in 0..log.rows() {
+        let g = model.gravity_forces(&log.theta[row * n..(row + 1) * n]).expect("lengths");
+        (0..n).for_each(|j| log.tau[row * n + j] -= g[j]);
+    }
+    let text = fault(&model, &log, CUTOFF);
+    assert!(text.contains("lack those of gravity") && text.ends_with("(gravity)"), "{text}");
+}
+
+#[test]
+fn units_of_forces_are_noticed() {
+    let (model, log) = simulated();
+    let n = model.n();
+    let rated: Vec<f64> = model.joints().filter_map(|joint| joint.limits.effort).collect();
+    assert_eq!(rated.len(), n);
+    let scaled = |factor: &dyn Fn(usize) -> f64| edited(&log, n, |_, _, tau| (0..n).for_each(|j| tau[j] *= factor(j)));
+    let text = fault(&model, &scaled(&|j| 100.0 / rated[j]), CUTOFF);
+    assert!(text.contains("per cent of the rated torque") && text.ends_with("(unit)"), "{text}");
+    let text = fault(&model, &scaled(&|j| 1000.0 / rated[j]), CUTOFF);
+    assert!(text.contains("per mille of the rated torque"), "{text}");
+    let text = fault(&model, &scaled(&|j| 1.0 / [12.0, 12.0, 9.0, 3.0, 3.0, 3.0][j]), CUTOFF);
+    assert!(text.contains("motor currents in A"), "{text}");
+}
+
+#[test]
+fn columns_of_wrists_that_are_swapped_are_noticed() {
+    let (model, log) = simulated();
+    let n = model.n();
+    let swapped = edited(&log, n, |theta, dtheta, tau| [theta, dtheta, tau].into_iter().for_each(|x| x.swap(3, 4)));
+    let text = fault(&model, &swapped, CUTOFF);
+    assert!(text.contains("the columns of wrist_1_joint and wrist_2_joint seem to be swapped"), "{text}");
+    let reversed = edited(&log, n, |theta, dtheta, tau| [theta, dtheta, tau].into_iter().for_each(|x| x.reverse()));
+    assert!(fault(&model, &reversed, CUTOFF).contains("in the reverse order, from wrist_3_joint"));
+}
+
+#[test]
+fn a_guess_explains_nearly_all_or_is_not_made() {
+    let (model, log) = simulated();
+    let n = model.n();
+    let one = edited(&log, n, |theta, dtheta, _| [theta, dtheta].into_iter().for_each(|x| x[3] = x[3].to_degrees()));
+    let text = fault(&model, &one, CUTOFF);
+    assert!(text.contains("position and velocity of wrist_1_joint seem to be in degrees"), "{text}");
+    let motors = edited(&log, n, |theta, dtheta, _| theta.iter_mut().chain(dtheta).for_each(|x| *x *= 101.0));
+    let text = fault(&model, &motors, CUTOFF);
+    assert!(text.contains("no single mistake explains it") && text.contains("elbow_joint"), "{text}");
+    let mut degrees = edited(&log, n, |theta, _, _| theta.iter_mut().for_each(|x| *x = x.to_degrees()));
+    degrees.dtheta = None;
+    assert!(fault(&model, &degrees, Cutoff::Automatic).contains("positions and velocities seem to be in degrees"));
+    // one fault, one message for each joint
+    let fast = edited(&log, n, |_, dtheta, _| dtheta.iter_mut().for_each(|x| *x = x.to_degrees()));
+    let text = fault(&model, &fast, CUTOFF);
+    assert!(text.contains("velocities in deg/s, positions in rad?"), "{text}");
+    let swapped = edited(&log, n, |_, dtheta, _| dtheta.swap(0, 1));
+    let all = findings(&model, &swapped, CUTOFF);
+    let of_velocities = all.iter().filter(|f| f.code == "swapped_joints" && f.text.contains("the velocity of")).count();
+    assert_eq!(of_velocities, all.iter().filter(|f| ["swapped_joints", "sign", "unit"].contains(&f.code)).count());
+}
+
+#[test]
+fn one_force_that_comes_late_is_named() {
+    let (model, log) = simulated();
+    let (n, clean) = (model.n(), edited(&log, model.n(), |_, _, _| {}));
+    for j in [0, 1, 4] {
+        let mut late = clean.clone();
+        (6..late.rows()).for_each(|row| late.tau[row * n + j] = clean.tau[(row - 6) * n + j]);
+        let all = findings(&model, &late, CUTOFF);
+        let name = model.velocity_names().nth(j).expect("a joint");
+        let is_named = |f: &Finding| f.code == "lag" && f.text.contains(&format!("the force of {name} comes at least"));
+        assert!(all.iter().any(is_named), "{name}: {all:?}");
+    }
+}
+
+#[test]
+fn logs_without_velocities_have_a_note_of_friction() {
+    let (model, log) = simulated();
+    let mut log = edited(&log, model.n(), |_, _, _| {});
+    let notes = |log: &Log| {
+        let options = Options { choice: Choice::all(Sensor::Link), ..Options::default() };
+        let found = identify(&model, std::slice::from_ref(log), &options, &|| false).expect("an identification");
+        judge(&found, std::slice::from_ref(log)).expect("a judgement").findings
+    };
+    assert!(!notes(&log).iter().any(|finding| finding.code == "no_velocities"));
+    log.dtheta = None;
+    assert!(notes(&log).iter().any(|finding| finding.code == "no_velocities" && finding.level == Level::Note));
+}
+
+#[test]
+fn real_logs_are_not_suspected() {
+    for case in cases() {
+        let all = findings(&case.model, &case.log, Cutoff::Hz(case.cutoff));
+        let wrong = ["lag", "unit", "gravity", "contradiction", "swapped_joints", "sign"];
+        assert!(!all.iter().any(|finding| wrong.contains(&finding.code)), "{all:?}");
+    }
+}
