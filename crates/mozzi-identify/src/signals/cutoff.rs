@@ -12,8 +12,8 @@ const BAND: f64 = 0.999;
 /// Cut-off over the band of the velocities, and over that of the forces, which contains products and sines of them.
 const OF_VELOCITIES: f64 = 5.0;
 const OF_FORCES: f64 = 2.0;
-/// Forces are predicted from positions that are filtered at this many times the velocities' band.
-const WIDE: f64 = 20.0;
+/// Forces are predicted from positions below this many times the velocities' band, where noise is small.
+const CLEAR: f64 = 2.0;
 /// More rows are not looked at.
 const ROWS: usize = 20_000;
 /// Forces below this part of the largest have no band of their own.
@@ -27,7 +27,7 @@ pub(super) fn automatic(model: &Model, log: &Log, rows: &Rows, filter: &Filter) 
     let Some(run) = rows.runs.iter().max_by_key(|run| run.len()) else { return (most, of_velocities) };
     let band = band_of_velocities(model, log, rows, run);
     let by_velocities = (OF_VELOCITIES * band).min(most);
-    let by_forces = (OF_FORCES * band_of_forces(model, log, rows, run, (WIDE * band).min(most), filter)).min(most);
+    let by_forces = (OF_FORCES * band_of_forces(model, log, rows, run, (CLEAR * band).min(most), filter)).min(most);
     if by_forces > by_velocities {
         (by_forces, "twice the band of 99.9 % of the power of the forces that the robot's file predicts")
     } else {
