@@ -19,7 +19,7 @@ pub enum Error {
         expected: String,
     },
     /// Time does not increase.
-    #[error("{log}: t is {found} s at row {row} (counted from 0) after {before} s, expected increasing times")]
+    #[error("{log}: t is {found} s at row {row} (counted from 0) after {before} s, expected increasing times: {why}")]
     NotMonotonic {
         /// The log's name.
         log: String,
@@ -29,6 +29,8 @@ pub enum Error {
         found: f64,
         /// The time of the row before.
         before: f64,
+        /// The likely cause, and the remedy.
+        why: String,
     },
     /// Too many rows are not numbers.
     #[error(
@@ -66,6 +68,9 @@ pub enum Error {
         /// Each fault, its place, and the remedy.
         faults: Vec<String>,
     },
+    /// The times of the rows are not known.
+    #[error("{}", .0.join("; also "))]
+    Clock(Vec<String>),
     /// The motion determines nothing.
     #[error("the motion does not excite the robot: {reason}; move every joint, or use `mozzi excite`")]
     NotExciting {
@@ -99,7 +104,16 @@ pub enum Error {
 impl Error {
     /// The faults among findings.
     pub(crate) fn of_faults(findings: &[Finding]) -> Self {
-        let faults = findings.iter().filter(|finding| finding.level == Level::Fault);
-        Error::Fault { faults: faults.map(|finding| format!("{} ({})", finding.text, finding.code)).collect() }
+        Error::Fault { faults: faults(findings) }
     }
+
+    /// The faults among findings, if the times are not known: nothing can be fitted.
+    pub(crate) fn of_clock(findings: &[Finding]) -> Self {
+        Error::Clock(faults(findings))
+    }
+}
+
+fn faults(findings: &[Finding]) -> Vec<String> {
+    let faults = findings.iter().filter(|finding| finding.level == Level::Fault);
+    faults.map(|finding| format!("{} ({})", finding.text, finding.code)).collect()
 }

@@ -11,6 +11,7 @@ mod identify;
 pub mod judgement;
 mod log;
 mod mend;
+pub mod order;
 mod payload;
 mod predict;
 mod refine;

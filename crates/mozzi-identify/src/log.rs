@@ -1,7 +1,9 @@
 //! A recorded motion, and the check of its rows.
 
-use crate::{Error, Finding};
+use crate::mend::clock;
+use crate::{Error, Finding, order};
 use mozzi::{FrameId, Freedom, Model, SpatialInertia};
+use std::borrow::Cow;
 
 /// A recorded motion with its torques. Tables are by rows: N rows of nq or n numbers in the model's order.
 #[derive(Clone, Debug, Default)]
@@ -28,9 +30,6 @@ pub struct Log {
     pub payload: Option<(FrameId, SpatialInertia)>,
 }
 
-/// The largest share of rows that may contain NaN.
-const MOST_MISSING: f64 = 0.05;
-
 /// A gap is a step in time longer than this many median steps.
 const GAP: f64 = 5.0;
 
@@ -51,9 +50,20 @@ pub struct Rows {
 }
 
 impl Log {
+    /// The largest share of rows that may contain NaN.
+    pub const MOST_MISSING: f64 = 0.05;
+
     /// The number of rows.
     pub fn rows(&self) -> usize {
         self.t.len()
+    }
+
+    /// Times in seconds, if those of the log are in another unit or have too few digits, and what was found about them.
+    /// Forces may be missing.
+    pub fn with_clock(&self, model: &Model) -> Option<(Vec<f64>, Vec<Finding>)> {
+        let (mut log, mut findings) = (Cow::Borrowed(self), Vec::new());
+        clock::mend(model, &mut log, &mut findings);
+        (!findings.is_empty()).then(|| (log.into_owned().t, findings))
     }
 
     /// All tables with their names and widths.
@@ -110,13 +120,14 @@ impl Log {
                 }
                 if !(self.t[row] > self.t[last]) {
                     let (found, before) = (self.t[row], self.t[last]);
-                    return Err(Error::NotMonotonic { log: log(), row, found, before });
+                    let why = order::explain(&self.t, row);
+                    return Err(Error::NotMonotonic { log: log(), row, found, before, why });
                 }
             }
             usable.push(row);
         }
         if let Some((column, row)) = missing {
-            if not_finite as f64 > MOST_MISSING * N as f64 {
+            if not_finite as f64 > Log::MOST_MISSING * N as f64 {
                 return Err(Error::NotFinite { log: log(), column, row, count: not_finite, rows: N });
             }
             findings.push(Finding::warning(

@@ -16,8 +16,16 @@ const UNCERTAIN: f64 = 1e-3;
 
 const UNITS: [(f64, &str); 3] = [(1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")];
 
+/// The unit, then the resolution; fewer rows than 20 tell nothing.
+pub fn mend(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
+    if log.rows() >= 20 {
+        unit(model, log, findings);
+        resolution(log, findings);
+    }
+}
+
 /// Converts times in ms, µs or ns to seconds, if the velocities or the sampling rate leave no doubt.
-pub fn unit(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
+fn unit(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
     if log.is_time_certain {
         return;
     }
@@ -91,7 +99,7 @@ fn by_velocity(model: &Model, log: &Log) -> Option<f64> {
 }
 
 /// A clock whose resolution is coarser than the step: rows at an even rate get even times, others are a fault.
-pub fn resolution(log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
+fn resolution(log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
     let N = log.rows();
     let same_numbers = |row: usize| {
         let width = log.tau.len() / N;

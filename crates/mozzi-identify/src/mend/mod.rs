@@ -1,7 +1,7 @@
 //! Mends what a log's driver got wrong in a way that leaves no doubt: the unit and the resolution of its clock,
 //! sensors that drop out or stay constant, spikes, positions that wrap. What is in doubt is a fault.
 
-mod clock;
+pub(crate) mod clock;
 mod dropouts;
 mod spikes;
 mod stuck;
@@ -22,8 +22,7 @@ pub fn mend<'l>(model: &Model, log: &'l Log) -> Result<(Cow<'l, Log>, Vec<Findin
     if log.rows() < 20 {
         return Ok((log, findings)); // too short, which `check` says
     }
-    clock::unit(model, &mut log, &mut findings);
-    clock::resolution(&mut log, &mut findings);
+    clock::mend(model, &mut log, &mut findings);
     dropouts::remove(model, &mut log, &mut findings);
     spikes::remove(model, &mut log, &mut findings);
     wrap::unwrap(model, &mut log, &mut findings);
@@ -41,8 +40,8 @@ fn axes(model: &Model) -> Vec<(usize, usize, String)> {
 /// The value below which this share of the numbers lies; 0 without numbers.
 fn quantile(mut numbers: Vec<f64>, share: f64) -> f64 {
     numbers.retain(|x| x.is_finite());
-    numbers.sort_by(f64::total_cmp);
-    numbers.get((numbers.len().saturating_sub(1) as f64 * share) as usize).copied().unwrap_or(0.0)
+    let at = (numbers.len().saturating_sub(1) as f64 * share) as usize;
+    if numbers.is_empty() { 0.0 } else { *numbers.select_nth_unstable_by(at, f64::total_cmp).1 }
 }
 
 /// The time of a row, or its number if it has none.

@@ -139,7 +139,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     let (log, mut findings) = mend(model, log)?;
     let log = log.as_ref();
     if findings.iter().any(|finding| finding.level == Level::Fault && finding.code.contains("clock")) {
-        return Err(Error::of_faults(&findings)); // no signal can be filtered without its times
+        return Err(Error::of_clock(&findings)); // no signal can be filtered without its times
     }
     let mut rows = log.check(model)?;
     findings.extend(rows.findings.clone());
@@ -230,60 +230,61 @@ impl Part<'_> {
         let positions = if is_spline || self.log.dtheta.is_none() { theta.clone() } else { Vec::new() };
         theta.iter_mut().for_each(|x| self.smooth(&times, x));
         normalize(self.model, &mut theta);
-        let differentiate = |x: &[f64]| derivative(x, step);
         let mut dtheta = match &self.log.dtheta {
             Some(table) => columns(table, n),
             None => self.velocities(&times, &theta, &positions),
         };
         let shape = &self.filter.friction;
-        let shaped = |shape: &dyn Fn(f64) -> f64, dtheta: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            let mut all: Vec<Vec<f64>> = dtheta.iter().map(|x| x.iter().map(|x| shape(*x)).collect()).collect();
-            all.iter_mut().for_each(|x| self.smooth(&times, x));
-            all
+        let kept = trim.min(N)..N.saturating_sub(trim).max(trim.min(N));
+        // memory: each signal is stored as soon as it is filtered
+        let store = |to: &mut Vec<f64>, width: usize, signals: &mut dyn Iterator<Item = Vec<f64>>| {
+            let begin = to.len();
+            to.resize(begin + kept.len() * width, 0.0);
+            for (k, x) in signals.enumerate() {
+                to.iter_mut().skip(begin + k).step_by(width).zip(&x[kept.clone()]).for_each(|(to, x)| *to = *x);
+            }
         };
-        let coulomb = samples.coulomb.is_some().then(|| shaped(&|x| shape.coulomb(x), &dtheta));
-        let stribeck = samples.stribeck.is_some().then(|| shaped(&|x| shape.stribeck(x), &dtheta));
+        let smooth = |mut x: Vec<f64>| {
+            self.smooth(&times, &mut x);
+            x
+        };
+        let shaped = |to: &mut Option<Vec<f64>>, of: &dyn Fn(f64) -> f64| {
+            if let Some(to) = to {
+                store(to, n, &mut dtheta.iter().map(|x| smooth(x.iter().map(|x| of(*x)).collect())));
+            }
+        };
+        shaped(&mut samples.coulomb, &|x| shape.coulomb(x));
+        shaped(&mut samples.stribeck, &|x| shape.stribeck(x));
         if self.log.dtheta.is_some() {
             dtheta.iter_mut().for_each(|x| self.smooth(&times, x));
         }
-        let ddtheta: Vec<Vec<f64>> = match (&self.log.ddtheta, self.filter.acceleration, self.cutoff) {
-            (Some(table), ..) => {
-                let mut given = columns(table, n);
-                given.iter_mut().for_each(|x| self.smooth(&times, x));
-                given
+        store(&mut samples.theta, nq, &mut theta.into_iter());
+        let given = self.log.ddtheta.as_ref();
+        match (given, self.filter.acceleration, self.cutoff) {
+            (Some(table), ..) => store(&mut samples.ddtheta, n, &mut (0..n).map(|k| smooth(raw(table, n, k)))),
+            (None, Acceleration::Spline, Some(cutoff)) => {
+                let found = self.by_spline(&times, &dtheta, &positions, cutoff);
+                store(&mut samples.ddtheta, n, &mut found.into_iter());
             }
-            (None, Acceleration::Spline, Some(cutoff)) => self.by_spline(&times, &dtheta, &positions, cutoff),
-            _ => dtheta.iter().map(|x| differentiate(x)).collect(),
-        };
-        let kept = trim..N.saturating_sub(trim);
-        let mut tau = columns(&self.log.tau, n);
-        for (x, removed) in tau.iter_mut().zip(&mut samples.removed) {
-            let raw = x.clone();
-            self.smooth(&times, x);
-            *removed += kept.clone().map(|k| (raw[k] - x[k]).powi(2)).sum::<f64>();
+            _ => store(&mut samples.ddtheta, n, &mut dtheta.iter().map(|x| derivative(x, step))),
         }
-        let mut target = self.log.target.as_ref().map(|table| columns(table, n));
-        target.iter_mut().flatten().for_each(|x| self.smooth(&times, x));
-        let mut wrenches: Vec<Vec<Vec<f64>>> = self.log.wrenches.iter().map(|(_, table)| columns(table, 6)).collect();
-        wrenches.iter_mut().flatten().for_each(|x| self.smooth(&times, x));
-
-        for k in kept {
+        store(&mut samples.dtheta, n, &mut dtheta.into_iter());
+        let removed = &mut samples.removed;
+        let mut forces = (0..n).map(|k| {
+            let rough = raw(&self.log.tau, n, k);
+            let x = smooth(rough.clone());
+            removed[k] += kept.clone().map(|k| (rough[k] - x[k]).powi(2)).sum::<f64>();
+            x
+        });
+        store(&mut samples.tau, n, &mut forces);
+        if let (Some(to), Some(table)) = (&mut samples.target, &self.log.target) {
+            store(to, n, &mut (0..n).map(|k| smooth(raw(table, n, k))));
+        }
+        for ((_, to), (_, table)) in samples.wrenches.iter_mut().zip(&self.log.wrenches) {
+            store(to, 6, &mut (0..6).map(|k| smooth(raw(table, 6, k))));
+        }
+        for k in kept.clone() {
             samples.t.push(times[k]);
-            let push = |to: &mut Vec<f64>, from: &[Vec<f64>]| to.extend(from.iter().map(|x| x[k]));
-            push(&mut samples.theta, &theta);
-            push(&mut samples.dtheta, &dtheta);
-            push(&mut samples.ddtheta, &ddtheta);
-            push(&mut samples.tau, &tau);
-            let optional =
-                [(&mut samples.coulomb, &coulomb), (&mut samples.stribeck, &stribeck), (&mut samples.target, &target)];
-            for (to, from) in optional {
-                if let (Some(to), Some(from)) = (to, from) {
-                    push(to, from);
-                }
-            }
-            for ((_, to), from) in samples.wrenches.iter_mut().zip(&wrenches) {
-                push(to, from);
-            }
             let nearest = self.nearest(&t, times[k]);
             samples.is_valid.extend((0..n).map(|j| !self.rows.saturated[nearest * n + j]));
         }

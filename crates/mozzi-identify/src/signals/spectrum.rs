@@ -63,14 +63,18 @@ fn transform(z: &mut [[f64; 2]]) {
         }
     }
     let mut half = 1;
+    let mut turns = Vec::with_capacity(N / 2);
     while half < N {
-        for k in 0..half {
-            let (s, c) = (-PI * k as f64 / half as f64).sin_cos();
-            for i in (k..N).step_by(2 * half) {
-                let ([a, b], [x, y]) = (z[i], z[i + half]);
+        turns.clear();
+        turns.extend((0..half).map(|k| (-PI * k as f64 / half as f64).sin_cos()));
+        // block by block, in the order of memory
+        for block in z.chunks_exact_mut(2 * half) {
+            let (low, high) = block.split_at_mut(half);
+            for ((low, high), &(s, c)) in low.iter_mut().zip(high).zip(&turns) {
+                let ([a, b], [x, y]) = (*low, *high);
                 let (x, y) = (c * x - s * y, s * x + c * y);
-                z[i] = [a + x, b + y];
-                z[i + half] = [a - x, b - y];
+                *low = [a + x, b + y];
+                *high = [a - x, b - y];
             }
         }
         half *= 2;
