@@ -141,6 +141,21 @@ mod tests {
     }
 
     #[test]
+    fn noise_of_many_rows_is_thinned_and_keeps_its_extremes() {
+        let mut points: Vec<[f64; 2]> = (0..200_000).map(|k| [f64::from(k), f64::from(k * 7919 % 1000)]).collect();
+        points[123_457][1] = 1500.0;
+        let panel = Panel { x_label: "x".into(), curves: vec![Curve::line("a", 0, points)], ..Panel::default() };
+        let figure = Figure { panels: vec![panel], ..Figure::default() };
+        let svg = figure.svg();
+        assert!(svg.len() < 100_000, "{} bytes", svg.len());
+        let path = svg.lines().filter(|line| line.starts_with("<path d=\"M")).max_by_key(|line| line.len());
+        let numbers = path.expect("a curve").split(['M', 'L', '"', ' ']).filter_map(|text| text.parse::<f64>().ok());
+        let heights: Vec<f64> = numbers.skip(1).step_by(2).collect();
+        let highest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+        assert_eq!(heights.iter().filter(|y| **y < highest + 50.0).count(), 1, "one spike is left");
+    }
+
+    #[test]
     fn a_figure_is_well_formed_and_small() {
         for scale in [Scale::Linear, Scale::Logarithmic] {
             let svg = wave(scale).svg();

@@ -135,7 +135,10 @@ impl Panel {
             // spikes end at the border
             let height = |y: f64| if cut == [None; 2] { y } else { y.clamp(ys[0], ys[1]) };
             let point = |p: &[f64; 2]| [across(self.scale.place(p[0])), up(height(self.scale.place(p[1])))];
-            line(out, &curve.points.iter().map(point).collect::<Vec<_>>(), curve, self.lies_on(k, ys[1] - ys[0]));
+            let points = curve.points.iter().map(point).collect::<Vec<_>>();
+            let has_marks = !matches!(curve.stroke, Stroke::Line | Stroke::Dashed);
+            let points = if has_marks { points } else { thinned(points) };
+            line(out, &points, curve, self.lies_on(k, ys[1] - ys[0]));
         }
         for (side, peak) in cut.into_iter().enumerate().filter_map(|(side, peak)| Some((side, peak?))) {
             let is_beyond = |y: f64| if side == 1 { y > ys[1] } else { y < ys[0] };
@@ -173,6 +176,28 @@ fn peaks(out: &mut String, places: impl Iterator<Item = f64>, [edge, inside]: [f
         last = x;
         let _ = writeln!(out, "<path d=\"M{x:.1} {edge:.1}l-4 {inside}h8Z\" fill=\"#333\"/>");
     }
+}
+
+/// A curve from left to right, with at most four points in each strip of half a unit: its first, lowest, highest and
+/// last one, so that it looks the same.
+fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let strip = |p: &[f64; 2]| (2.0 * p[0]).floor();
+    let is_forward = points.windows(2).all(|pair| pair[0][0] <= pair[1][0]);
+    if !is_forward || points.iter().any(|p| !p[1].is_finite()) {
+        return points;
+    }
+    let mut found = Vec::new();
+    for run in points.chunk_by(|a, b| strip(a) == strip(b)) {
+        let by_height = |(_, a): &(usize, &[f64; 2]), (_, b): &(usize, &[f64; 2])| a[1].total_cmp(&b[1]);
+        let end = |k: Option<(usize, &[f64; 2])>| k.map_or(0, |(k, _)| k);
+        let low = end(run.iter().enumerate().min_by(by_height));
+        let high = end(run.iter().enumerate().max_by(by_height));
+        let mut kept = [0, low, high, run.len() - 1];
+        kept.sort_unstable();
+        let distinct = kept.chunk_by(|a, b| a == b).map(|same| run[same[0]]);
+        found.extend(distinct);
+    }
+    found
 }
 
 /// A curve that lies `on` others is dashes on them.
