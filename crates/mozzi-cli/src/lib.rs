@@ -2,6 +2,7 @@
 //! errors; every formula is the library's.
 
 mod angles;
+mod bag;
 mod columns;
 mod commands;
 mod conditions;

@@ -5,8 +5,8 @@ use crate::failure::{self, Failure, Result};
 use crate::input;
 use crate::numbers::{WRENCH, array, is_number, number, numbers_for};
 use crate::robot::RobotArguments;
-use crate::tables::read as table_file;
 use crate::tables::samples::Samples;
+use crate::tables::{motion, read as table_file};
 use clap::{Args, ValueEnum};
 use mozzi::{Base, Model, Wrench};
 use mozzi_motion::Policy;
@@ -110,9 +110,9 @@ impl MotorArguments {
     pub fn followed(&self, model: &Model) -> Result<Option<Followed>> {
         let Some(file) = &self.follow else { return Ok(None) };
         let fixed = model.with_base(Base::Fixed)?;
-        let (samples, is_of_joints) = table_file::read_joints(file, model, &fixed)?;
+        let (samples, is_of_joints) = table_file::read_joints(file, model, &fixed, &motion::HOW)?;
+        let samples = motion::mended(samples, if is_of_joints { &fixed } else { model })?;
         let times = samples.times()?;
-        check_times(&samples, times)?;
         let theta = samples.need("theta", model)?;
         // does the table describe the base and the joints, or the joints only?
         let whole = if is_of_joints { Base::Fixed } else { model.base() };
@@ -244,7 +244,7 @@ impl MotorArguments {
             Beyond::Zero => Outside::Zero,
         };
         let times = samples.times()?;
-        check_times(samples, times)?;
+        motion::check(samples)?;
         let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or(0.0));
         if matches!(self.extrapolate, Beyond::Error) && (first > 0.0 || last < end * (1.0 - 1e-12)) {
             return Err(Failure::wrong(format!(
@@ -253,17 +253,6 @@ impl MotorArguments {
             )));
         }
         Ok(Table::new(times.to_vec(), values)?.outside(outside))
-    }
-}
-
-/// Checks that the times of a table increase.
-pub fn check_times(samples: &Samples, times: &[f64]) -> Result<()> {
-    match (1..times.len()).find(|&row| times[row] <= times[row - 1]) {
-        None => Ok(()),
-        Some(row) => {
-            let (place, t, before) = (samples.place(row), times[row], times[row - 1]);
-            Err(Failure::wrong(format!("{place}: t is {t} after {before}, expected increasing times")))
-        }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::failure::{self, Failure, Result};
 use crate::input;
 use crate::robot::RobotArguments;
 use crate::robot_json;
-use crate::tables::read as table_file;
+use crate::tables::{motion, read as table_file};
 use clap::{Args, ValueEnum};
 use mozzi::{Model, Wrench};
 use mozzi_report::{Drawing, Meshes, Motion, Touches};
@@ -203,7 +203,7 @@ pub fn touches(
 
 /// A table's motion; the energies are computed from it.
 pub fn read(file: &str, model: &Model) -> Result<Motion> {
-    let mut samples = table_file::read(file, model)?;
+    let mut samples = motion::mended(table_file::read_as(file, model, &motion::HOW)?, model)?;
     let (t, theta) = (samples.times()?.to_vec(), samples.need("theta", model)?.to_vec());
     let mut take = |name| samples.tables.remove(name);
     let motion = Motion {

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::serve::request::{self, Head};
-use crate::tables::{read, states::States};
+use crate::tables::{motion, read, states::States};
 use mozzi::quantities::Query;
 use mozzi::{Description, Model};
 use std::io::Result as IoResult;
@@ -28,7 +28,8 @@ pub fn robot_text(model: &Model) -> String {
 /// # Errors
 /// The error with its place.
 pub fn table(file: &str, model: &Model) -> Result<Samples, String> {
-    read::read(file, model).map_err(said)
+    let samples = read::read_as(file, model, &motion::HOW);
+    samples.and_then(|samples| motion::mended(samples, model)).map_err(said)
 }
 
 /// A log as `identify` reads it: the numbers of times, positions and forces.

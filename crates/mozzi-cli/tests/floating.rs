@@ -96,7 +96,7 @@ fn tables_name_their_columns() {
     let some = file(&folder, "some.csv", &format!("t,tau_base.wx,tau_{joints}\n0,0,1,2,3,4,5\n"));
     let (code, message) = complaint(&["simulate", TREE, "--floating", "--torque", &some]);
     assert!(
-        code == 1 && message.contains("column tau_base.wy is missing; the file has 6 of the 11 columns of its group"),
+        code == 1 && message.contains("column tau_base.wy is missing; the file has 6 of the 11 columns of forces"),
         "{message}"
     );
     let odd = file(&folder, "odd.csv", "theta_base.qq\n0\n");

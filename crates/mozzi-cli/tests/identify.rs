@@ -71,7 +71,7 @@ fn bad_input_is_refused() {
     assert!(why.contains("2 usable rows") || why.contains("1 usable rows"), "{why}");
     let file = common::file(&folder, "names.csv", "t,q1,tau1\n0,0,0\n");
     let (_, why) = complaint(&["identify", "double_pendulum", &file]);
-    assert!(why.contains("column theta_2 is missing") && why.contains("--lock joint2=POSITION"), "{why}");
+    assert!(why.contains("column q2 is missing") && why.contains("--lock joint2=POSITION"), "{why}");
     let (_, why) = complaint(&["identify", "double_pendulum", &file, "--out", "robot.txt"]);
     assert!(why.contains("expected a name that ends in .urdf, .json, .xml (MJCF)"), "{why}");
     let (_, why) = complaint(&["identify", "double_pendulum", &file, "--fit", "55"]);

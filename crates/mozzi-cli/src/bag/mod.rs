@@ -1,16 +1,20 @@
 //! `sensor_msgs/msg/JointState` messages as a table: of an MCAP file, of a SQLite file of rosbag2, or of a rosbag2
 //! folder.
 
-use super::topics;
-use crate::failure::{Failure, Result};
+mod cdr;
+mod message;
+mod topics;
+
+use crate::failure::{self, Failure, Result};
 use crate::input::cannot;
 use crate::recogniser::Request;
 use crate::sqlite::Database;
+use crate::tables::read::Choose;
 use crate::tables::samples::Samples;
-use mozzi::Model;
+use message::State;
 #[cfg(feature = "mcap")]
 use mozzi_urdf::files;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The type's names in ROS 2 and ROS 1.
@@ -22,29 +26,68 @@ pub fn is_bag(file: &str) -> bool {
     matches!(ending.as_deref(), Some("mcap" | "db3" | "zstd")) || Path::new(file).is_dir()
 }
 
+/// The messages of a topic.
+#[derive(Default)]
+struct Topic {
+    states: Vec<State>,
+    /// The number of messages that are not complete.
+    damaged: usize,
+    /// The number of messages whose lists differ in length, and the lengths of the first.
+    uneven: (usize, String),
+}
+
 /// The messages by topic.
 #[derive(Default)]
-struct Topics(BTreeMap<String, Vec<State>>);
+struct Topics(BTreeMap<String, Topic>);
 
 impl Topics {
     /// Adds a message that was received at this time, ns.
     fn add(&mut self, file: &str, topic: &str, received: i64, bytes: &[u8]) -> Result<()> {
-        let state = state(bytes, received).ok_or_else(|| {
-            Failure::wrong(format!("{file}: a message of {topic} is damaged, expected a JointState in CDR"))
-        })?;
+        let of_topic = self.0.entry(topic.to_string()).or_default();
+        let Some(state) = State::read(bytes, received) else {
+            of_topic.damaged += 1;
+            return Ok(());
+        };
         if let Some(name) = state.names.iter().enumerate().find(|(k, name)| state.names[..*k].contains(name)) {
             return Err(Failure::wrong(format!(
                 "{file}: a message of {topic} names the joint `{}` twice, expected different names",
                 name.1
             )));
         }
-        self.0.entry(topic.to_string()).or_default().push(state);
+        match state.uneven() {
+            Some(lengths) if of_topic.uneven.0 == 0 => of_topic.uneven = (1, lengths),
+            Some(_) => of_topic.uneven.0 += 1,
+            None => of_topic.states.push(state),
+        }
         Ok(())
+    }
+
+    /// The complete messages. Others are left out with a note; a bag without complete ones is an error.
+    fn complete(self, file: &str) -> Result<BTreeMap<String, Vec<State>>> {
+        let (mut found, mut left_out) = (BTreeMap::new(), Vec::new());
+        for (topic, Topic { states, damaged, uneven: (uneven, lengths) }) in self.0 {
+            let all = states.len() + damaged + uneven;
+            let damage =
+                format!("{file}: {damaged} of {all} messages of {topic} are damaged, expected JointState in CDR");
+            let lengths = format!(
+                "{file}: {uneven} of {all} messages of {topic} have lists of other lengths than their names ({lengths} in \
+                 the first), expected one number for each name, or none"
+            );
+            left_out.extend([(damaged, damage), (uneven, lengths)].into_iter().filter(|(count, _)| *count > 0));
+            if !states.is_empty() {
+                found.insert(topic, states);
+            }
+        }
+        if let (true, Some((_, what))) = (found.is_empty(), left_out.first()) {
+            return Err(Failure::wrong(what));
+        }
+        left_out.iter().for_each(|(_, what)| failure::note(&format!("{what}; they are left out")));
+        Ok(found)
     }
 }
 
-/// The robot's motion in a bag; joints that a message lacks are NaN.
-pub fn read(file: &str, model: &Model, request: &Request) -> Result<Samples> {
+/// The robot's motion in a bag; joints that a message lacks are NaN. The robot is chosen by the names of joints.
+pub fn read(file: &str, choose: Choose, request: &Request) -> Result<Samples> {
     let mut topics = Topics::default();
     for part in parts(file)? {
         match part.to_lowercase() {
@@ -59,7 +102,10 @@ pub fn read(file: &str, model: &Model, request: &Request) -> Result<Samples> {
     if topics.0.is_empty() {
         return Err(Failure::wrong(format!("{file} has no messages of {}", TYPES[0])));
     }
-    let states = topics::choose(file, topics.0, model, request)?;
+    let topics = topics.complete(file)?;
+    let names: BTreeSet<&String> = topics.values().flatten().flat_map(|state| &state.names).collect();
+    let model = choose(&names.into_iter().map(|name| format!("theta_{name}")).collect::<Vec<_>>());
+    let states = topics::choose(file, topics, model, request)?;
     topics::table(file, states, model, request)
 }
 
@@ -172,71 +218,5 @@ fn of_sqlite(file: &str, topics: &mut Topics) -> Result<()> {
     match (damaged, read) {
         (Some(failure), _) => Err(failure),
         (None, read) => read.map_err(wrong),
-    }
-}
-
-/// One message.
-pub struct State {
-    /// The header's time, ns.
-    pub stamp: i64,
-    /// The time at which it was recorded, ns.
-    pub received: i64,
-    pub names: Vec<String>,
-    /// Positions, velocities, efforts.
-    pub values: [Vec<f64>; 3],
-}
-
-/// A JointState in CDR, little-endian: header, names, positions, velocities, efforts.
-fn state(bytes: &[u8], received: i64) -> Option<State> {
-    if bytes.get(1) != Some(&1) {
-        return None; // big-endian, or something else
-    }
-    let mut from = Cdr { bytes: bytes.get(4..)?, at: 0 };
-    let (seconds, nanoseconds) = (from.uint32()? as i32, from.uint32()?);
-    from.string()?;
-    let count = from.uint32()?;
-    let names = (0..count).map(|_| from.string()).collect::<Option<Vec<_>>>()?;
-    let mut values: [Vec<f64>; 3] = Default::default();
-    for list in &mut values {
-        let count = from.uint32()? as usize;
-        if count > 0 {
-            from.align(8);
-            *list = (0..count).map(|_| from.float64()).collect::<Option<Vec<_>>>()?;
-        }
-    }
-    let stamp = i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds);
-    Some(State { stamp, received, names, values })
-}
-
-struct Cdr<'b> {
-    bytes: &'b [u8],
-    at: usize,
-}
-
-impl Cdr<'_> {
-    fn align(&mut self, to: usize) {
-        self.at = self.at.next_multiple_of(to);
-    }
-
-    fn take<const K: usize>(&mut self) -> Option<[u8; K]> {
-        let found = self.bytes.get(self.at..self.at.checked_add(K)?)?.try_into().ok();
-        self.at += K;
-        found
-    }
-
-    fn uint32(&mut self) -> Option<u32> {
-        self.align(4);
-        self.take().map(u32::from_le_bytes)
-    }
-
-    fn float64(&mut self) -> Option<f64> {
-        self.take().map(f64::from_le_bytes)
-    }
-
-    fn string(&mut self) -> Option<String> {
-        let length = self.uint32()? as usize;
-        let text = self.bytes.get(self.at..self.at.checked_add(length)?)?;
-        self.at += length;
-        Some(String::from_utf8_lossy(text.strip_suffix(b"\0").unwrap_or(text)).into_owned())
     }
 }

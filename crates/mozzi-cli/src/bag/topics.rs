@@ -1,6 +1,6 @@
 //! The topic of a bag that holds the robot's joints, and its messages as a table.
 
-use super::joint_states::State;
+use super::message::State;
 use crate::failure::{self, Failure, Result};
 use crate::recogniser::{Header, Recognised, Request, is_alike};
 use crate::tables::samples::Samples;

@@ -5,13 +5,12 @@ use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
-use crate::motors::check_times;
 use crate::numbers::{number, one_or_each};
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units};
 use crate::state::positions;
 use crate::tables::format::Format;
-use crate::tables::read as table_file;
+use crate::tables::{motion, read as table_file};
 use crate::text::{Decimals, Page, about, scalar, table};
 use crate::workload::{self, BINARY, TEXT};
 use clap::{Args, ValueEnum};
@@ -172,7 +171,7 @@ impl TrajectoryArguments {
                 let [dtheta, ddtheta] =
                     ["dtheta", "ddtheta"].map(|name| samples.tables.get(name).map(|table| rows(table, model.n())));
                 if let Some(times) = &samples.t {
-                    check_times(&samples, times)?;
+                    motion::check(&samples)?;
                     if self.profile.is_some() {
                         return Err(Failure::wrong(format!(
                             "--profile and the column t of {file} both define the timing, expected one of them"

@@ -13,12 +13,12 @@ pub mod unit;
 mod word;
 mod wrench;
 
-pub use entries::{Force, IS_CURRENT, holds_names, is_alike};
+pub use entries::{Force, IS_CURRENT, Locked, holds_names, is_alike};
 pub use time::Time;
 
 use crate::columns;
 use crate::failure::{Failure, Result};
-use crate::tables::samples::{Row, Samples};
+use crate::tables::samples::{LockedRange, Row, Samples};
 use crate::text_table::clock;
 use mozzi::Model;
 use mozzi::quantities::INPUTS;
@@ -96,6 +96,8 @@ impl Header {
 pub struct Request<'r> {
     /// The log's names of joints in the robot's order, which replace the robot's.
     pub order: &'r [String],
+    /// Joints that the robot lacks, since they are locked.
+    pub locked: &'r [String],
     /// Which columns are forces.
     pub force: Force,
     /// Only columns whose path begins with this.
@@ -104,6 +106,12 @@ pub struct Request<'r> {
     pub has_flags: bool,
     /// Whether target positions are read beside measured ones.
     pub targets: bool,
+}
+
+impl Request<'_> {
+    /// Nothing is known.
+    pub const NONE: Self =
+        Request { order: &[], locked: &[], force: Force::Torque, topic: None, has_flags: false, targets: false };
 }
 
 /// The use of a column.
@@ -115,6 +123,8 @@ pub enum Role {
     Wrench,
     /// The target of a measured position, by its entry.
     Target(usize),
+    /// Names of joints, which give the order of others.
+    Names,
     /// Why it is not used.
     Unused(&'static str),
 }
@@ -127,6 +137,7 @@ pub struct Recognised {
     groups: [Option<Vec<Option<Column>>>; GROUPS.len()],
     wrenches: Vec<wrench::Wrench>,
     targets: Option<Vec<Option<Column>>>,
+    locked: Vec<Locked>,
     /// Notes about columns that were converted, preferred or left out.
     pub notes: Vec<String>,
     /// Each column with its meaning.
@@ -144,8 +155,8 @@ impl Recognised {
         let mut notes = assignment.notes;
         let rows = show::rows(header, model, &roles, &assignment.groups, time);
         notes.extend(show::unused(place, header, &roles));
-        let (groups, targets) = (assignment.groups, assignment.targets);
-        Ok(Recognised { time, groups, wrenches, targets, notes, rows })
+        let (groups, targets, locked) = (assignment.groups, assignment.targets, assignment.locked);
+        Ok(Recognised { time, groups, wrenches, targets, locked, notes, rows })
     }
 
     /// The contents of the columns; `number` takes a row and a column.
@@ -175,13 +186,23 @@ impl Recognised {
                 }
                 Time::Column { column, factor } => {
                     let factor = factor.unwrap_or(1.0);
-                    let start = if factor == 1.0 && first(column).abs() < 1e8 { 0.0 } else { first(column) };
+                    let is_same = (1..count).all(|row| number(row, column) == first(column));
+                    let is_kept = is_same || factor == 1.0 && first(column).abs() < 1e8;
+                    let start = if is_kept { 0.0 } else { first(column) };
                     (0..count).map(|row| (number(row, column) - start) * factor).collect()
                 }
             }
         });
         let is_time_certain = self.time.is_none_or(|time| !matches!(time, Time::Column { factor: None, .. }));
-        Samples { file: file.to_string(), count, t, tables, is_time_certain, ..Samples::default() }
+        let locked = self.locked.iter().map(|locked| {
+            let (column, factor) = locked.column;
+            let range = (0..count).map(|row| number(row, column) * factor);
+            let [low, high] = range.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [x.min(a), x.max(b)]);
+            let name = self.rows[column].column.clone();
+            LockedRange { joint: locked.joint.clone(), meaning: locked.meaning, column: name, low, high }
+        });
+        let locked = locked.collect();
+        Samples { file: file.to_string(), count, t, tables, is_time_certain, locked, ..Samples::default() }
     }
 
     /// The columns that are used, in order; a file without any is an error.
@@ -206,9 +227,11 @@ impl Recognised {
             Time::Pair { seconds, rest, .. } => [Some(seconds), Some(rest)],
         });
         let targets = self.targets.iter().flatten().flatten().map(|(column, _)| *column);
+        let locked = self.locked.iter().map(|locked| locked.column.0);
         time.flatten()
             .chain(groups)
             .chain(targets)
+            .chain(locked)
             .chain(self.wrenches.iter().flat_map(|(_, columns)| columns).copied())
     }
 

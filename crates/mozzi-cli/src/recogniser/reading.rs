@@ -46,7 +46,7 @@ pub fn read(name: &str, joints: &[&str], row_unit: Option<Unit>) -> Option<Readi
 }
 
 /// Places at which a joint's name stands by itself.
-fn places<'n>(name: &'n str, joint: &'n str) -> impl Iterator<Item = (&'n str, &'n str)> {
+pub(super) fn places<'n>(name: &'n str, joint: &'n str) -> impl Iterator<Item = (&'n str, &'n str)> {
     let is_apart = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric());
     name.match_indices(joint).filter_map(move |(k, _)| {
         let (before, after) = (&name[..k], &name[k + joint.len()..]);

@@ -20,6 +20,7 @@ pub fn rows(
                 ("target position θ*".to_string(), unit(1.0, 0), joint.to_string())
             }
             Role::Wrench => ("wrench".to_string(), "N m, N".to_string(), String::new()),
+            Role::Names => ("names of the joints, which give their order".to_string(), String::new(), String::new()),
             Role::Unused(why) => (format!("not used: {why}"), String::new(), String::new()),
             Role::Value(group, entry) => {
                 let joint = columns::entries(model, GROUPS[*group]).get(*entry).copied().unwrap_or_default();

@@ -133,6 +133,15 @@ pub fn find(place: &str, header: &Header, roles: &mut [Role]) -> Result<Option<T
             Part::Rest(..) => {}
         }
     }
+    // whole seconds of a stamp without the rest are no time of rows, if there is another
+    let is_cut = |time: &Time| {
+        let column = time.first();
+        let is_pair = matches!(time, Time::Pair { .. });
+        !is_pair && parts.iter().any(|(of, part, _)| *of == column && matches!(part, Part::Seconds(_)))
+    };
+    if found.iter().any(|(_, time)| !is_cut(time)) {
+        found.retain(|(_, time)| !is_cut(time));
+    }
     if found.is_empty() {
         // an index of pandas that holds dates
         let unnamed = (0..header.names.len()).find(|&k| header.is_unnamed(k) && header.clock(k).is_some());

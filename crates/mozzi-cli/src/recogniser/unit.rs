@@ -79,6 +79,17 @@ pub fn unit(text: &str) -> Option<Unit> {
     Some(Unit { name, dimension: *dimension, factor: *factor })
 }
 
+/// A velocity or acceleration that is written in a unit of positions: `qd_deg` is in deg/s.
+pub fn per_second(unit: Unit, dimension: Dimension) -> Option<Unit> {
+    let time = match dimension {
+        Velocity => "/s",
+        Acceleration => "/s²",
+        _ => return None,
+    };
+    let found = UNITS.iter().find(|(_, name, of, _)| *of == dimension && name.strip_suffix(time) == Some(unit.name));
+    found.map(|(_, name, _, factor)| Unit { name, dimension, factor: *factor })
+}
+
 /// The name without its unit. `may_be` decides whether the rest can do without the ending: a joint may be called `a`.
 pub fn split(name: &str, may_be: impl Fn(&str, Unit) -> bool) -> Option<(&str, Unit)> {
     let name = name.trim_end();

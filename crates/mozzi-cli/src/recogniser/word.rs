@@ -33,8 +33,11 @@ pub enum Word {
 
 const QUANTITIES: [(&[&str], usize); 4] = [
     (&["theta", "q", "pos", "position", "angle", "ang", "θ"], THETA),
-    (&["dtheta", "qd", "dq", "qdot", "dqdt", "vel", "velocity", "velocitie", "speed", "omega", "thetadot"], DTHETA),
-    (&["ddtheta", "qdd", "ddq", "qddot", "acc", "accel", "acceleration", "thetaddot"], DDTHETA),
+    (
+        &["dtheta", "qd", "dq", "qdot", "dqdt", "vel", "velocity", "velocitie", "speed", "omega", "thetadot", "θdot"],
+        DTHETA,
+    ),
+    (&["ddtheta", "qdd", "ddq", "qddot", "acc", "accel", "acceleration", "thetaddot", "θddot"], DDTHETA),
     (&["tau", "torque", "effort", "moment", "force", "trq", "trque", "tq", "eff", "τ"], TAU),
 ];
 
@@ -134,6 +137,9 @@ const WORDS: [(Word, &[&str]); 8] = [
     ),
 ];
 
+/// Combining dots above a letter: `q̇` is `qdot`, `q̈` is `qddot`.
+const DOTS: [(char, &str); 2] = [('\u{307}', "dot"), ('\u{308}', "ddot")];
+
 /// The words of a text in lower case, with their places: runs of letters or of digits; `jointPosition` has two words.
 pub fn words(text: &str) -> Vec<(std::ops::Range<usize>, String)> {
     let mut found: Vec<(std::ops::Range<usize>, String)> = Vec::new();
@@ -152,6 +158,12 @@ pub fn words(text: &str) -> Vec<(std::ops::Range<usize>, String)> {
                 word.extend(c.to_lowercase());
                 range.end = k + c.len_utf8();
             }
+        } else if let (Some((_, dots)), Some((range, word))) =
+            (DOTS.iter().find(|(dots, _)| *dots == c), found.last_mut())
+            && range.end == k
+        {
+            word.push_str(dots);
+            range.end = k + c.len_utf8();
         }
         before = Some(c);
     }
@@ -181,6 +193,8 @@ mod tests {
         assert_eq!(of("actual_qd_0"), ["actual", "qd", "0"]);
         assert_eq!(of("tau_J[3]"), ["tau", "j", "3"]);
         assert_eq!(of("jointPosition12"), ["joint", "position", "12"]);
+        assert_eq!(of("θ\u{307}_1 q\u{308}2"), ["θdot", "1", "qddot", "2"]);
+        assert_eq!([word("θdot"), word("qddot")], [Word::Quantity(DTHETA), Word::Quantity(DDTHETA)]);
         assert_eq!(word("efforts"), Word::Quantity(TAU));
         assert_eq!(word("velocities"), Word::Quantity(DTHETA));
         assert_eq!(word("temperatures"), Word::Other);

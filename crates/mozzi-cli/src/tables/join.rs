@@ -66,16 +66,7 @@ pub fn join(samples: &mut Samples, model: &Model) -> Result<()> {
         ));
     }
     if rows.len() < N && (is_other || is_sparse) {
-        for table in samples.tables.values_mut() {
-            let width = table.len() / N.max(1);
-            *table = rows.iter().flat_map(|&row| table[row * width..][..width].iter().copied()).collect();
-        }
-        samples.t = Some(rows.iter().map(|&row| t[row]).collect());
-        samples.count = rows.len();
-        samples.lines = match samples.lines.is_empty() {
-            true => Vec::new(),
-            false => rows.iter().map(|&row| samples.lines[row]).collect(),
-        };
+        samples.keep(&rows);
     }
     Ok(())
 }

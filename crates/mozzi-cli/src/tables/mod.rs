@@ -5,6 +5,8 @@ pub mod array;
 pub mod arrow;
 mod bound;
 pub mod format;
+pub mod join;
+pub mod motion;
 pub mod npy;
 pub mod npz;
 #[cfg(feature = "parquet")]

@@ -6,6 +6,7 @@ use super::npy::{self, Header};
 use super::npz;
 use super::samples::Samples;
 use super::{How, recognised};
+use crate::bag;
 use crate::columns;
 use crate::failure::{Failure, Result};
 use crate::input::Input;
@@ -33,17 +34,20 @@ pub fn read_as(file: &str, model: &Model, how: &How) -> Result<Samples> {
 
 /// Reads the columns of a robot or, if there are as many positions as joints, those of the same robot on a fixed base;
 /// returns `true` for the latter.
-pub fn read_joints(file: &str, model: &Model, fixed: &Model) -> Result<(Samples, bool)> {
+pub fn read_joints(file: &str, model: &Model, fixed: &Model, how: &How) -> Result<(Samples, bool)> {
     let is_of_joints = Cell::new(false);
     let choose = |names: &[String]| {
         let positions = recogniser::positions(names);
         is_of_joints.set(positions == fixed.nq() && !names.iter().any(|name| name.starts_with("theta_base.")));
         if is_of_joints.get() { fixed } else { model }
     };
-    Ok((read_by(file, &choose, &How::default())?, is_of_joints.get()))
+    Ok((read_by(file, &choose, how)?, is_of_joints.get()))
 }
 
 fn read_by<'m>(file: &str, choose: Choose<'_, 'm>, how: &How) -> Result<Samples> {
+    if bag::is_bag(file) {
+        return bag::read(file, choose, &how.request);
+    }
     match Format::of_input(file)? {
         Format::Npy => match open_npy(file)? {
             (header, from) if header.is_structured => structured(file, &header, from, choose, how),

@@ -15,6 +15,16 @@ pub struct Row {
     pub joint: String,
 }
 
+/// The range of a position or velocity of a joint that is locked, by its column.
+#[derive(Clone, Debug)]
+pub struct LockedRange {
+    pub joint: String,
+    pub meaning: &'static str,
+    pub column: String,
+    pub low: f64,
+    pub high: f64,
+}
+
 /// Numbers by name: those of the inputs, `wrench` of the tip; for .npz also `gravity`, `parameters` and `wrench_FRAME`.
 #[derive(Debug, Default)]
 pub struct Samples {
@@ -32,6 +42,8 @@ pub struct Samples {
     pub is_time_certain: bool,
     /// The meaning of each column.
     pub columns: Vec<Row>,
+    /// The ranges of locked joints.
+    pub locked: Vec<LockedRange>,
 }
 
 impl Samples {
@@ -41,6 +53,22 @@ impl Samples {
             Some(line) => format!("{}:{line}", self.file),
             None => format!("{}: state {row} (counted from 0)", self.file),
         }
+    }
+
+    /// Keeps these rows, which increase.
+    pub fn keep(&mut self, rows: &[usize]) {
+        let N = self.count.max(1);
+        for table in self.tables.values_mut().chain(&mut self.t) {
+            let width = table.len() / N;
+            for (to, &row) in rows.iter().enumerate() {
+                table.copy_within(row * width..(row + 1) * width, to * width);
+            }
+            table.truncate(rows.len() * width);
+        }
+        if !self.lines.is_empty() {
+            self.lines = rows.iter().map(|&row| self.lines[row]).collect();
+        }
+        self.count = rows.len();
     }
 
     /// The times, which the command requires.

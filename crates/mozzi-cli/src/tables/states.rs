@@ -1,7 +1,7 @@
 //! The states of a file, as tables by rows.
 
 use super::array::tuple;
-use super::format::{Format, TABLE};
+use super::format::Format;
 use super::npy::Header;
 use super::precision::Precision;
 use super::samples::{Samples, columns_of};
@@ -28,7 +28,7 @@ pub struct States<T> {
 impl<T: Precision> States<T> {
     /// `applied` is the same in all states; then the file must not contain a frame's wrench.
     pub fn read(file: &str, query: Query, model: &Model, applied: &[(FrameId, Wrench)]) -> Result<Self> {
-        let format = Format::of(file, &TABLE)?;
+        let format = Format::of_input(file)?;
         // a quantity that depends on wrenches alone is 0 without them
         let needs_wrench = query.declaration().uses == Uses::WRENCHES && applied.is_empty();
         let mut samples = match format {

@@ -25,6 +25,14 @@ pub fn seconds(text: &str) -> Option<f64> {
     is_clock.then(|| days as f64 * 86400.0 + f64::from(hours * 3600 + minutes * 60) + rest - offset)
 }
 
+/// Whether a text begins with a date such as 03/01/2024, in which the month or the day may come first.
+pub fn is_ambiguous(text: &str) -> bool {
+    let date = text.trim().trim_matches('"').split(['T', ' ']).next().unwrap_or_default();
+    let parts: Vec<&str> = date.split(['/', '-']).collect();
+    let is_number = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
+    parts.len() == 3 && parts.iter().all(is_number) && parts.iter().map(|part| part.len()).eq([2, 2, 4])
+}
+
 /// Days since 1970 of the Gregorian calendar (Hinnant, days_from_civil).
 fn days(date: &str) -> Option<i64> {
     let separator = ['-', '/', '.'].into_iter().find(|&c| date.contains(c))?;
@@ -55,7 +63,7 @@ fn offset(text: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::seconds;
+    use super::{is_ambiguous, seconds};
 
     #[test]
     fn dates_are_seconds_since_1970() {
@@ -66,5 +74,6 @@ mod tests {
         for text in ["0.5", "2024-05-01", "elbow", "24:00:00", "2024-13-01T00:00:00"] {
             assert_eq!(seconds(text), None, "{text}");
         }
+        assert!(is_ambiguous("03/01/2024 12:59:50.0 PM") && !is_ambiguous("2024-03-01") && !is_ambiguous("0.5"));
     }
 }

@@ -7,6 +7,9 @@ use crate::recogniser::unit;
 /// Lines that are looked at.
 const MOST: usize = 60;
 
+/// Lines of one cell.
+const MOST_OF_CELL: usize = 20;
+
 /// The separator of columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
@@ -96,14 +99,7 @@ struct Guess<'t> {
 impl Dialect {
     /// From the beginning of a file; `is_all` if there is no more.
     pub fn of(name: &str, text: &str, is_all: bool) -> Result<Self> {
-        let (mut all, mut at) = (Vec::new(), 0);
-        for (k, line) in text.split_inclusive('\n').enumerate() {
-            at += line.len();
-            if line.ends_with('\n') || is_all {
-                let bare = line.trim_end_matches(['\n', '\r']).trim_start_matches('\u{feff}');
-                all.push(Line { text: bare, end: at, number: k as u64 + 1 });
-            }
-        }
+        let all = logical_lines(text, is_all);
         let is_comment =
             |line: &Line| line.text.trim_start().starts_with(['#', '%']) && !line.text.starts_with("%time");
         let comments: Vec<&Line> = all.iter().filter(|line| is_comment(line)).collect();
@@ -169,6 +165,26 @@ impl Dialect {
             notes,
         })
     }
+}
+
+/// The lines; a cell in quotes may continue on the next ones.
+fn logical_lines(text: &str, is_all: bool) -> Vec<Line<'_>> {
+    let mut ends: Vec<usize> = text.match_indices('\n').map(|(k, _)| k + 1).collect();
+    if ends.last().copied().unwrap_or(0) < text.len() {
+        ends.push(text.len());
+    }
+    let (mut all, mut begin, mut k) = (Vec::new(), 0, 0);
+    while k < ends.len() {
+        let is_balanced = |end: &usize| text[begin..*end].bytes().filter(|&byte| byte == b'"').count() % 2 == 0;
+        let more = ends[k..].iter().take(MOST_OF_CELL).position(is_balanced).unwrap_or(0);
+        let end = ends[k + more];
+        if text[..end].ends_with('\n') || is_all {
+            let bare = text[begin..end].trim_end_matches(['\n', '\r']).trim_start_matches('\u{feff}');
+            all.push(Line { text: bare, end, number: k as u64 + 1 });
+        }
+        (begin, k) = (end, k + more + 1);
+    }
+    all
 }
 
 /// A header without rows.

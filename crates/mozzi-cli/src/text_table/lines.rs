@@ -10,11 +10,13 @@ pub struct Lines {
     input: Input,
     line: u64,
     length: u64,
+    /// Whether lines end with a carriage return alone; None before the first bytes.
+    has_returns: Option<bool>,
 }
 
 impl Lines {
     pub fn of(input: Input) -> Self {
-        Lines { input, line: 1, length: 0 }
+        Lines { input, line: 1, length: 0, has_returns: None }
     }
 
     fn wrong(&self, what: &str) -> io::Error {
@@ -25,13 +27,23 @@ impl Lines {
 impl Read for Lines {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         let count = self.input.read(to)?;
-        for &byte in &to[..count] {
-            self.length += 1;
-            match byte {
-                b'\n' => (self.line, self.length) = (self.line + 1, 0),
-                0 => return Err(self.wrong("holds a zero byte, expected text")),
-                _ if self.length > LONGEST => return Err(self.wrong("is longer than 64 MiB, expected a row")),
-                _ => {}
+        let found = &mut to[..count];
+        let has_returns = *self
+            .has_returns
+            .get_or_insert_with(|| found[..count - 1.min(count)].contains(&b'\r') && !found.contains(&b'\n'));
+        if has_returns {
+            found.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
+        }
+        for piece in found.split_inclusive(|&byte| byte == b'\n') {
+            self.length += piece.len() as u64;
+            if piece.contains(&0) {
+                return Err(self.wrong("holds a zero byte, expected text"));
+            }
+            if self.length > LONGEST {
+                return Err(self.wrong("is longer than 64 MiB, expected a row"));
+            }
+            if piece.ends_with(b"\n") {
+                (self.line, self.length) = (self.line + 1, 0);
             }
         }
         Ok(count)

@@ -2,7 +2,9 @@
 
 pub mod clock;
 mod dialect;
+mod kind;
 mod lines;
+mod lists;
 
 use crate::columns;
 use crate::failure::{self, Failure, Result};
@@ -13,12 +15,17 @@ use crate::recogniser::{GROUPS, Header, Recognised, holds_names};
 use crate::tables::How;
 use crate::tables::samples::Samples;
 use dialect::{Dialect, Separator};
+use kind::{check_json, check_kind};
 use lines::{Blanks, Lines};
+use lists::Lists;
 use mozzi::Model;
 use std::io::{Cursor, Read};
 
 /// Complete lines that are read before the rest.
 const LINES: usize = 60;
+
+/// A table with more columns is refused.
+const MOST_COLUMNS: usize = 20_000;
 
 /// A text, open after its header.
 pub struct TextTable {
@@ -29,6 +36,7 @@ pub struct TextTable {
     pub place: String,
     reader: csv::Reader<Box<dyn Read>>,
     dialect: Dialect,
+    lists: Lists,
     kilobytes: usize,
 }
 
@@ -42,6 +50,9 @@ impl TextTable {
         let is_all = loop {
             let mut piece = vec![0; 1 << 16];
             let count = lines.read(&mut piece).map_err(|error| Failure::wrong(format!("{name}: {error}")))?;
+            if begin.is_empty() {
+                check_json(&name, &piece[..count])?;
+            }
             begin.extend(&piece[..count]);
             found += piece[..count].iter().filter(|&&byte| byte == b'\n').count();
             if count == 0 || found >= LINES {
@@ -70,14 +81,19 @@ impl TextTable {
         // cells are trimmed when they are read: csv would copy each row for that
         builder.has_headers(false).delimiter(dialect.separator.byte()).flexible(true);
         let reader = builder.comment(Some(b'#')).from_reader(rest);
+        let lists = Lists::of(&dialect.first);
         let header = Header {
-            names: dialect.names.clone(),
-            units: dialect.units.clone(),
-            first: dialect.first.clone(),
+            names: lists.names(&dialect.names),
+            units: lists.repeated(&dialect.units),
+            first: lists.cells(dialect.first.iter().map(String::as_str)).map(str::to_string).collect(),
             given: Vec::new(),
         };
+        if header.names.len() > MOST_COLUMNS {
+            let found = header.names.len();
+            return Err(Failure::wrong(format!("{place} has {found} columns, expected at most {MOST_COLUMNS}")));
+        }
         let kilobytes = std::fs::metadata(file).map_or(0, |found| found.len() / 1000) as usize;
-        Ok(TextTable { name, header, place, reader, dialect, kilobytes })
+        Ok(TextTable { name, header, place, reader, dialect, lists, kilobytes })
     }
 
     /// Whether numbers are written as 0,5.
@@ -92,7 +108,8 @@ impl TextTable {
         mut each: impl FnMut(u64, &csv::StringRecord) -> Result<()>,
     ) -> Result<()> {
         let (name, skipped) = (self.name.clone(), self.dialect.begin.1);
-        let expected = self.header.names.len();
+        let names = &self.dialect.names;
+        let (expected, mut headers) = (names.len(), 0);
         let progress = Progress::new("reading", self.kilobytes, "kB");
         let mut record = csv::StringRecord::new();
         let mut short: Option<(u64, usize)> = None;
@@ -109,15 +126,25 @@ impl TextTable {
                 return Err(unequal(&name, line, found, expected, self.dialect.separator));
             }
             if !is_there {
+                if headers > 0 {
+                    failure::note(&format!(
+                        "{name}: the header is repeated {headers} times below; these lines are left out"
+                    ));
+                }
                 return Ok(());
             }
             let line = record.position().map_or(0, csv::Position::line) + skipped;
             progress.at(record.position().map_or(0, |position| position.byte() / 1000) as usize);
             let found = record.len();
             let has_end = found == expected + 1 && record.get(expected).is_some_and(|cell| cell.trim().is_empty());
-            let lacks_end = found + 1 == expected && self.header.names.last().is_some_and(String::is_empty);
-            if found == expected || has_end || lacks_end {
-                each(line, &record)?;
+            let lacks_end = found + 1 == expected && names.last().is_some_and(String::is_empty);
+            if expected > 0 && record.iter().map(str::trim).eq(names.iter().map(String::as_str)) {
+                headers += 1;
+            } else if found == expected || has_end || lacks_end {
+                match self.lists.are_there() {
+                    true => each(line, &self.lists.cells(record.iter()).collect())?,
+                    false => each(line, &record)?,
+                }
             } else {
                 short = Some((line, found));
             }
@@ -128,46 +155,6 @@ impl TextTable {
 /// True for the texts that programs write for a missing number.
 fn is_missing(cell: &str) -> bool {
     ["", "nan", "null", "none", "na", "n/a", "-", "--", "#n/a"].contains(&cell.trim().to_lowercase().as_str())
-}
-
-/// Formats that are no text are named by their first bytes.
-fn check_kind(file: &str) -> Result<()> {
-    let mut first = [0; 20];
-    let count = match std::fs::File::open(file) {
-        Ok(mut opened) if opened.metadata().is_ok_and(|found| found.is_file()) => opened.read(&mut first).unwrap_or(0),
-        _ => 0,
-    };
-    let wrong = |what: &str| Err(Failure::wrong(format!("{file} is {what}")));
-    match &first[..count] {
-        bytes if bytes.starts_with(b"#ROSBAG") => wrong(
-            "a bag of ROS 1; `rosbags-convert --src FILE.bag --dst FOLDER` (pip install rosbags) writes one of ROS 2",
-        ),
-        bytes if bytes.starts_with(b"MATLAB ") => wrong(
-            "a .mat file of MATLAB; `writetable(array2table(data, 'VariableNames', names), 'log.csv')` writes CSV, \
-             `scipy.io.loadmat` reads it in Python",
-        ),
-        bytes if bytes.starts_with(b"\x89HDF") => wrong(
-            "an HDF5 file (.h5, or .mat of version 7.3); `pandas.read_hdf(file).to_csv(\"log.csv\")` or h5py with \
-             numpy.savez writes what is read here: .csv, .npz",
-        ),
-        bytes if bytes.starts_with(b"PK\x03\x04") => {
-            wrong("a spreadsheet or another zip archive; save it as CSV, or name it .npz if NumPy wrote it")
-        }
-        bytes if bytes.starts_with(b"PAR1") => {
-            wrong("a Parquet file; name it .parquet, or write CSV: df.to_csv(\"log.csv\")")
-        }
-        bytes if bytes.starts_with(b"SQLite format 3") => {
-            wrong("a SQLite file; name it .db3 if it is a bag of rosbag2")
-        }
-        bytes if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) => {
-            wrong("UTF-16 text; `iconv -f utf-16 -t utf-8` or \"CSV UTF-8\" in a spreadsheet writes what is read here")
-        }
-        bytes if bytes.starts_with(b"\x80\x04\x95") || bytes.starts_with(b"\x80\x05\x95") => {
-            wrong("a pickle of Python, which is not read since it may run code; df.to_csv(\"log.csv\") writes CSV")
-        }
-        [0x1f, 0x8b, ..] => wrong("compressed by gzip; `gunzip` it first"),
-        _ => Ok(()),
-    }
 }
 
 /// Reads a file, or standard input for `-`. The robot is chosen by the header.
@@ -242,6 +229,12 @@ impl Cells {
         if is_time && let Some(t) = clock::seconds(cell) {
             return Ok(t);
         }
+        if is_time && clock::is_ambiguous(cell) {
+            return Err(Failure::wrong(format!(
+                "{place} is `{cell}`, a date whose first number may be the month or the day; write it as \
+                 2024-03-01T12:59:50.002, in pandas: df[\"t\"] = pandas.to_datetime(df[\"t\"])"
+            )));
+        }
         match self.has_decimal_commas {
             true => number(place, &cell.replacen(',', ".", 1)),
             false => number(place, cell),
@@ -249,18 +242,15 @@ impl Cells {
     }
 }
 
-/// A cell that holds a list is no number.
+/// A cell that holds lists of another kind is no number.
 fn check_lists(text: &TextTable) -> Result<()> {
     for (column, cell) in text.header.first.iter().enumerate() {
         let cell = cell.trim();
         let name = text.header.names.get(column).map_or("", String::as_str);
-        if holds_names(name) {
-            continue;
-        }
-        if cell.len() > 2 && cell.starts_with(['[', '(']) && cell.ends_with([']', ')']) && cell.contains([',', ' ']) {
+        if cell.len() > 2 && cell.starts_with("[[") && cell.ends_with(']') {
             return Err(Failure::wrong(format!(
-                "{}: column {} (`{name}`) holds lists, such as `{}`, expected one number in each cell; in pandas: \
-                 df[[\"{name}_0\", …]] = df[\"{name}\"].map(ast.literal_eval).tolist()",
+                "{}: column {} (`{name}`) holds nested lists, such as `{}`, expected one number or one list of numbers in \
+                 each cell",
                 text.place,
                 column + 1,
                 crate::terminal::excerpt(cell)

@@ -67,7 +67,7 @@ fn database(times: usize, ending: &str) -> Vec<u8> {
     file[56..60].copy_from_slice(&[0, 0, 0, 1]);
     let topic = row(&[(Vec::new(), 0), text("/joint_states"), text("sensor_msgs/msg/JointState"), text("cdr")]);
     file.extend(leaf(&[topic], 1, 0));
-    let data = vec![0; 2000];
+    let data = vec![7; 2000];
     let length = data.len() as u64;
     file.extend(leaf(&[row(&[(Vec::new(), 0), (vec![1], 1), (vec![9], 1), (data, 12 + 2 * length)])], times, 0));
     file
@@ -81,9 +81,12 @@ fn files_of_sqlite_that_are_no_bags_say_so() {
         std::fs::write(&path, bytes).expect("a file");
         complaint(&["identify", ROBOT, path.to_str().expect("text")]).1
     };
-    assert!(of("one.db3", &database(1, "")).contains("is damaged, expected a JointState in CDR"));
+    assert!(
+        of("one.db3", &database(1, ""))
+            .contains("1 of 1 messages of /joint_states are damaged, expected JointState in CDR")
+    );
     let why = of("overlap.db3", &database(16_000, ""));
-    assert!(why.contains("cells overlap") || why.contains("expected a JointState"), "{why}");
+    assert!(why.contains("cells overlap") || why.contains("expected JointState"), "{why}");
     let why = of("rowid.db3", &database(1, "WITHOUT ROWID"));
     assert!(why.contains("WITHOUT ROWID"), "{why}");
     file(&folder, "hot.db3-journal", "a transaction");

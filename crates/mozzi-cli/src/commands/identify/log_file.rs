@@ -1,14 +1,12 @@
 //! A log of any format.
 
-use super::join::join;
-use super::joint_states::{self, is_bag};
 use crate::failure::{Failure, Result};
 use crate::recogniser::{Force, IS_CURRENT, Request, TARGET};
-use crate::tables::samples::Row;
-use crate::tables::samples::Samples;
+use crate::tables::join::join;
+use crate::tables::samples::{LockedRange, Row, Samples};
 use crate::tables::{How, read};
 use mozzi::{FrameId, Model};
-use mozzi_identify::Log;
+use mozzi_identify::{Log, order};
 
 /// Options of the command line for reading logs.
 #[derive(Clone, Copy, Debug)]
@@ -16,15 +14,17 @@ pub struct Given<'g> {
     pub order: &'g [String],
     pub force: Force,
     pub topic: Option<&'g str>,
+    /// Names of locked joints.
+    pub locked: &'g [String],
 }
+
+/// A locked joint may move by this, rad or m, or at this speed.
+const STILL: f64 = 1e-3;
 
 /// The table of a log, as its columns are recognised: of any format, MCAP and rosbag2 with `JointState` messages.
 pub fn read_table(file: &str, model: &Model, given: &Given) -> Result<Samples> {
-    let request =
-        Request { order: given.order, force: given.force, topic: given.topic, has_flags: true, targets: true };
-    if is_bag(file) {
-        return joint_states::read(file, model, &request);
-    }
+    let Given { order, force, topic, locked } = *given;
+    let request = Request { order, locked, force, topic, has_flags: true, targets: true };
     read::read_as(file, model, &How { request, may_miss: true })
 }
 
@@ -32,6 +32,7 @@ pub fn read_table(file: &str, model: &Model, given: &Given) -> Result<Samples> {
 pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Row>)> {
     let mut samples = read_table(file, model, given)?;
     join(&mut samples, model)?;
+    check_locked(&samples)?;
     let Samples { file: name, columns, is_time_certain, .. } = &samples;
     let (name, columns, is_time_certain) = (name.clone(), columns.clone(), *is_time_certain);
     let wrong = |what: String| Failure::wrong(format!("{name}: {what}"));
@@ -44,6 +45,9 @@ pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Ro
         ))
     })?;
     let need = |what: &str, columns: &str| wrong(format!("no {what}, expected columns such as {columns}"));
+    if t.len() > 1 && t.iter().all(|time| *time == t[0]) {
+        return Err(wrong(format!("t is {} s: {}", t[0], order::explain(&t, 1))));
+    }
     let theta =
         samples.tables.remove("theta").ok_or_else(|| need("positions", "theta_JOINT, q_1 or position_JOINT"))?;
     let tau = samples.tables.remove("tau").ok_or_else(|| {
@@ -64,6 +68,18 @@ pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Ro
     let wrenches = samples.tables.into_iter().filter(|(name, _)| name == "wrench" || name.starts_with("wrench_"));
     let wrenches = wrenches.map(|(table, rows)| Ok((frame_of(&name, &table, model)?, rows))).collect::<Result<_>>()?;
     Ok((Log { name, t, theta, dtheta, ddtheta, tau, target, wrenches, is_time_certain, ..Log::default() }, columns))
+}
+
+/// A joint that is locked must stand still in the log.
+fn check_locked(samples: &Samples) -> Result<()> {
+    match samples.locked.iter().find(|range| range.high - range.low > STILL) {
+        None => Ok(()),
+        Some(LockedRange { joint, meaning, column, low, high }) => Err(Failure::wrong(format!(
+            "{}: --lock {joint}: its {meaning} (`{column}`) is between {low:.4} and {high:.4}, expected a joint that \
+             does not move; without --lock its columns of positions and forces are needed",
+            samples.file
+        ))),
+    }
 }
 
 /// The frame of a table `wrench` or `wrench_FRAME`.

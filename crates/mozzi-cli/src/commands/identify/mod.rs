@@ -1,12 +1,9 @@
 //! `mozzi identify`: the robot's parameters from logs of its motion.
 
-mod join;
-mod joint_states;
 mod log_file;
 mod output;
 mod page;
 mod simulators;
-mod topics;
 
 use crate::columns::save;
 use crate::edits;
@@ -158,8 +155,10 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
     let (input, settings) = (&arguments.robot.model, || arguments.robot.settings());
     let out = arguments.out.as_deref().map(|out| Out::new(input, out, settings())).transpose()?;
     let whole = arguments.robot.load()?;
-    let model = edits::sought(&whole, &arguments.coupled, &arguments.lock_list(&whole)?)?;
-    let given = arguments.given();
+    let locks = arguments.lock_list(&whole)?;
+    let model = edits::sought(&whole, &arguments.coupled, &locks)?;
+    let locked: Vec<String> = locks.iter().filter_map(|lock| Some(lock.split_once('=')?.0.to_string())).collect();
+    let given = arguments.given(&locked);
     if arguments.columns {
         return arguments.column_tables(&model, &given);
     }
@@ -221,14 +220,14 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
 
 /// Reads a log without options of the command line.
 pub fn log(file: &str, model: &Model) -> Result<Log> {
-    let given = Given { order: &[], force: Force::Torque, topic: None };
+    let given = Given { order: &[], force: Force::Torque, topic: None, locked: &[] };
     Ok(read_log(file, model, &given)?.0)
 }
 
 impl IdentifyArguments {
-    fn given(&self) -> Given<'_> {
+    fn given<'g>(&'g self, locked: &'g [String]) -> Given<'g> {
         let force = if self.torque == Torque::Current { Force::Current } else { Force::Torque };
-        Given { order: &self.order, force, topic: self.topic.as_deref() }
+        Given { order: &self.order, force, topic: self.topic.as_deref(), locked }
     }
 
     /// The locks with each pattern replaced by the joints that it matches.

@@ -1,7 +1,9 @@
 //! Errors about the columns of a table, with remedies.
 
-use super::{MEANINGS, Search};
+use super::{LISTS, MEANINGS, Search};
 use crate::failure::{Failure, Result};
+use crate::recogniser::reading::places;
+use crate::recogniser::word::{DDTHETA, DTHETA, words};
 use crate::recogniser::{Column, GROUPS, Role, columns, endings, own_names};
 use mozzi::spelling::distance;
 
@@ -50,22 +52,48 @@ impl Search<'_> {
         }
         let first = if base == 0 { optional } else { 0 };
         let at = (first..found.len()).find(|&k| found[k].is_none()).unwrap_or(0);
-        let name = match self.request.order.is_empty() {
+        let own = match self.request.order.is_empty() {
             true => own_names(self.model, group)[at].clone(),
             false => format!("{}_{}", GROUPS[group], self.request.order[at]),
         };
-        let lock = match (self.request.has_flags, self.model.velocity_names().nth(at)) {
-            (true, Some(joint)) if optional == 0 => {
-                format!("; --lock {joint}=POSITION locks a joint that the log lacks")
-            }
+        let name = self.as_written(group, found, at).unwrap_or(own);
+        let entry = columns::entries(self.model, GROUPS[group])[at];
+        let (of, list) = match MEANINGS.get(group) {
+            Some(meaning) if !name.contains(entry) => (format!(", the {meaning} of {entry}"), LISTS[group]),
+            Some(_) => (String::new(), LISTS[group]),
+            None => (String::new(), GROUPS[group]),
+        };
+        let remedy = match (self.request.has_flags && optional == 0, group) {
+            (true, DTHETA | DDTHETA) => format!("; without any {list}, they are differentiated: remove the others"),
+            (true, _) => match self.model.velocity_names().nth(at) {
+                Some(joint) => format!("; if the joint did not move, --lock {joint}=POSITION leaves it out"),
+                None => String::new(),
+            },
             _ => String::new(),
         };
         Err(self.wrong(&format!(
-            "column {name} is missing; the file has {} of the {} columns of its group{}{lock}",
+            "column {name} is missing{of}; the file has {} of the {} columns of {list}{}{remedy}",
             found.iter().flatten().count(),
             found.len(),
             self.unread()
         )))
+    }
+
+    /// The column of an entry, as this file would call it, by the name of another entry's column.
+    fn as_written(&self, group: usize, found: &[Option<Column>], at: usize) -> Option<String> {
+        let names = self.names(group);
+        found.iter().enumerate().find_map(|(k, column)| {
+            let name = self.name((*column)?.0);
+            if let Some((before, after)) = places(name, names[k]).last() {
+                return Some(format!("{before}{}{after}", names[at]));
+            }
+            // the number of the entry, from 0 or 1
+            let (range, number) = words(name).into_iter().rev().find_map(|(range, text)| {
+                let number = text.parse::<usize>().ok().filter(|number| [k, k + 1].contains(number))?;
+                Some((range, number))
+            })?;
+            Some(format!("{}{}{}", &name[..range.start], number + at - k, &name[range.end..]))
+        })
     }
 
     /// The columns whose names are not recognised.

@@ -7,7 +7,7 @@ mod similar;
 pub use similar::{holds_names, is_alike};
 
 use super::reading::{self, Entry, Kind, Reading, suits};
-use super::unit::Dimension;
+use super::unit::{Dimension, per_second};
 use super::word::{DDTHETA, DTHETA, Origin, TAU, THETA};
 use super::{Column, GROUPS, Header, Request, Role, columns, is_own};
 use crate::failure::{Failure, Result};
@@ -28,12 +28,22 @@ pub const IS_CURRENT: &str = "a motor current, no torque";
 
 /// Names of the first four groups in messages.
 const MEANINGS: [&str; 4] = ["position", "velocity", "acceleration", "force"];
+const LISTS: [&str; 4] = ["positions", "velocities", "accelerations", "forces"];
 
 /// The groups with their columns.
 pub struct Assignment {
     pub groups: [Option<Vec<Option<Column>>>; GROUPS.len()],
     pub targets: Option<Vec<Option<Column>>>,
+    pub locked: Vec<Locked>,
     pub notes: Vec<String>,
+}
+
+/// A position or velocity of a locked joint.
+#[derive(Clone, Debug)]
+pub struct Locked {
+    pub joint: String,
+    pub meaning: &'static str,
+    pub column: Column,
 }
 
 /// Columns of one group and kind, by entry.
@@ -56,7 +66,10 @@ impl Assignment {
         let mut groups: [Option<Vec<Option<Column>>>; GROUPS.len()] = Default::default();
         search.own_vectors(&mut groups, roles)?;
         let mut readings = search.readings(roles)?;
-        search.name_indices(&mut readings);
+        for column in search.name_indices(&mut readings) {
+            roles[column] = Role::Names;
+        }
+        let locked = search.take_locked(&mut readings, roles);
         search.resolve(&mut readings);
         let (mut origin, mut targets): (Option<usize>, _) = (None, None);
         for group in [THETA, DTHETA, DDTHETA, TAU] {
@@ -87,7 +100,7 @@ impl Assignment {
             }
         }
         search.check_spelling(roles)?;
-        Ok(Assignment { groups, targets, notes: search.notes })
+        Ok(Assignment { groups, targets, locked, notes: search.notes })
     }
 }
 
@@ -158,12 +171,31 @@ impl Search<'_> {
         Ok(())
     }
 
+    /// Takes the columns of locked joints, which have no entry.
+    fn take_locked(&self, readings: &mut Vec<(usize, Reading)>, roles: &mut [Role]) -> Vec<Locked> {
+        let mut found = Vec::new();
+        readings.retain(|(column, reading)| {
+            let Entry::Name(name) = &reading.entry else { return true };
+            if !self.request.locked.contains(name) {
+                return true;
+            }
+            roles[*column] = Role::Unused("its joint is locked");
+            if [THETA, DTHETA].contains(&reading.quantity) && class(reading.kind.origin) == 0 {
+                let column = (*column, reading.unit.map_or(1.0, |unit| unit.factor));
+                found.push(Locked { joint: name.clone(), meaning: MEANINGS[reading.quantity], column });
+            }
+            false
+        });
+        found
+    }
+
     /// Reads the name of each column.
     fn readings(&mut self, roles: &mut [Role]) -> Result<Vec<(usize, Reading)>> {
-        let names: Vec<String> = match self.request.order.is_empty() {
+        let mut names: Vec<String> = match self.request.order.is_empty() {
             true => self.model.position_names().chain(self.model.velocity_names()).map(String::from).collect(),
             false => self.request.order.to_vec(),
         };
+        names.extend_from_slice(self.request.locked);
         let joints: Vec<&str> = names.iter().map(String::as_str).collect();
         let is_franka = self.header.names.iter().any(|name| name.contains("tau_J"));
         let mut found = Vec::new();
@@ -216,6 +248,10 @@ impl Search<'_> {
                     roles[column] = Role::Unused("another topic");
                     continue;
                 }
+            }
+            let rate = [(DTHETA, Dimension::Velocity), (DDTHETA, Dimension::Acceleration)];
+            if let (Some(unit), Some((_, dimension))) = (read.unit, rate.iter().find(|(of, _)| *of == read.quantity)) {
+                read.unit = per_second(unit, *dimension).or(read.unit);
             }
             if let Some(unit) = read.unit {
                 let meaning = MEANINGS[read.quantity];

@@ -32,8 +32,10 @@ pub fn holds_names(column: &str) -> bool {
 
 impl Search<'_> {
     /// Columns `name0` … hold the names of `position0` …, a column `name` with a list those of all.
-    pub(super) fn name_indices(&self, readings: &mut [(usize, Reading)]) {
+    /// Returns these columns.
+    pub(super) fn name_indices(&self, readings: &mut [(usize, Reading)]) -> Vec<usize> {
         let mut names: BTreeMap<(String, usize), String> = BTreeMap::new();
+        let mut columns = Vec::new();
         for (column, name) in self.header.names.iter().enumerate().filter(|(_, name)| holds_names(name)) {
             let Some(cell) = self.header.first.get(column).map(|cell| cell.trim()) else { continue };
             let separator = if name.contains('/') { '/' } else { '.' };
@@ -43,6 +45,7 @@ impl Search<'_> {
             let bare = |text: &str| text.trim().trim_matches(['"', '\'']).to_string();
             let mut add = |k: usize, text: &str| {
                 if !bare(text).is_empty() && text.trim().parse::<f64>().is_err() {
+                    columns.push(column);
                     names.insert((path.clone(), k), bare(text));
                 }
             };
@@ -50,7 +53,8 @@ impl Search<'_> {
                 Ok(index) => add(index, cell),
                 Err(_) => {
                     let inside = cell.trim_matches(['"', '[', ']', '(', ')']);
-                    inside.split(',').enumerate().for_each(|(k, text)| add(k, text));
+                    let inside: Vec<&str> = inside.split([',', ' ']).filter(|text| !text.is_empty()).collect();
+                    inside.into_iter().enumerate().for_each(|(k, text)| add(k, text));
                 }
             }
         }
@@ -61,6 +65,7 @@ impl Search<'_> {
                 reading.entry = known.map_or(Entry::Name(name.clone()), Entry::Known);
             }
         }
+        columns
     }
 
     /// Names that differ in case or separators, and unique endings.

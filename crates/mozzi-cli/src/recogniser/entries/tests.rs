@@ -20,7 +20,7 @@ fn numbers_begin_where_they_are_complete() {
         assert_eq!((of(&found, THETA), of(&found, TAU)), (vec![1, 2], vec![3, 4]), "{text}");
     }
     assert!(find("t,q0,q1,q2,tau0,tau1", &[]).expect_err("three").contains("neither from 0 nor from 1"));
-    assert!(find("t,q1,tau1,tau2", &[]).expect_err("one").contains("theta_2 is missing"));
+    assert!(find("t,q1,tau1,tau2", &[]).expect_err("one").contains("column q2 is missing, the position of joint2"));
 }
 
 #[test]
