@@ -70,8 +70,9 @@ mod tests {
             let row = (1..t.len()).find(|&k| t[k] <= t[k - 1]).expect("a row");
             explain(&t, row)
         };
-        for (change, words) in [
-            (&(|t| t[500] = t[499]) as &dyn Fn(&mut Vec<f64>), "1 rows have the time of the row before"),
+        type Change<'c> = &'c dyn Fn(&mut Vec<f64>);
+        let cases: [(Change, &str); 8] = [
+            (&|t| t[500] = t[499], "1 rows have the time of the row before"),
             (&|t| t[500] = 1.0, "this row is out of order"),
             (&|t| t[500..].iter_mut().for_each(|t| *t -= 5.0), "the clock starts again"),
             (&|t| t[500..].iter_mut().for_each(|t| *t -= 3.0), "the clock was set back by 2.9900 s"),
@@ -79,7 +80,8 @@ mod tests {
             (&|t| (10..20).for_each(|k| t.swap(10 * k, 10 * k + 1)), "rows are out of order in 10 places"),
             (&|t| (300..1000).for_each(|k| t[k] = clock(k % 300)), "goes back in 3 places, by up to 2.9900 s"),
             (&|t| t.fill(1.7e9), "six digits (%g) of it are steps of 10000 s"),
-        ] {
+        ];
+        for (change, words) in cases {
             let why = with(change);
             assert!(why.contains(words), "{words}: {why}");
         }

@@ -70,7 +70,16 @@ fn band_of_forces(model: &Model, log: &Log, rows: &Rows, run: &[usize], cutoff: 
         ..Log::default()
     };
     let all: Vec<usize> = (0..run.len()).collect();
-    let part = Part { model, log: &motion, run: &all, rows, cutoff: Some(cutoff), low_pass: Some(&low_pass), filter };
+    let part = Part {
+        model,
+        log: &motion,
+        run: &all,
+        rows,
+        cutoff: Some(cutoff),
+        low_pass: Some(&low_pass),
+        filter,
+        stride: 1,
+    };
     let mut samples = Samples { removed: vec![0.0; n], ..Samples::default() };
     part.append(trim, &mut samples);
     let mut forces = vec![Vec::with_capacity(samples.count()); n];

@@ -162,15 +162,26 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     // what the ends of a filtered run are worth: two periods of the cut-off
     let two_periods = cutoff.map_or(0.0, |f| (2.0 * rate / f).ceil());
     let trim = two_periods as usize;
-    let mut samples =
-        Samples { rate, cutoff, payload: log.payload, removed: vec![0.0; model.n()], ..Samples::default() };
+    let stride = stride(rows.runs.iter().map(Vec::len).sum(), rate, cutoff);
+    if stride > 1 {
+        let what =
+            format!("{}: one of {stride} filtered rows is fitted, {:.0} a second", log.name, rate / stride as f64);
+        findings.push(Finding::note("thinned", format!("{what}: the filter leaves nothing between them")));
+    }
+    let mut samples = Samples {
+        rate: rate / stride as f64,
+        cutoff,
+        payload: log.payload,
+        removed: vec![0.0; model.n()],
+        ..Samples::default()
+    };
     if log.dtheta.is_some() {
         (samples.coulomb, samples.stribeck) = (Some(Vec::new()), filter.friction.stribeck.map(|_| Vec::new()));
     }
     samples.target = log.target.as_ref().map(|_| Vec::new());
     samples.wrenches = log.wrenches.iter().map(|(frame, _)| (*frame, Vec::new())).collect();
     for run in rows.runs.iter().filter(|run| run.len() > trim.saturating_mul(2).saturating_add(10)) {
-        let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter };
+        let part = Part { model, log, run, rows: &rows, cutoff, low_pass: low_pass.as_ref(), filter, stride };
         part.append(trim, &mut samples);
     }
     findings.extend(velocities::check(model, log, &rows, low_pass.as_ref(), trim));
@@ -182,6 +193,18 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     let N = samples.count() as f64;
     samples.removed.iter_mut().for_each(|sum| *sum /= N);
     Ok((samples, findings))
+}
+
+/// Fewer samples are all kept.
+const MANY: usize = 100_000;
+
+/// Samples in a period of the cut-off that are kept.
+const PER_PERIOD: f64 = 20.0;
+
+/// Of many rows of a filtered signal, one of this many has all that the filter left.
+fn stride(rows: usize, rate: f64, cutoff: Option<f64>) -> usize {
+    let most = cutoff.map_or(1.0, |cutoff| rate / (PER_PERIOD * cutoff));
+    (rows / MANY).clamp(1, (most as usize).max(1))
 }
 
 /// Linear interpolation at even times.
@@ -209,6 +232,8 @@ struct Part<'a> {
     cutoff: Option<f64>,
     low_pass: Option<&'a LowPass>,
     filter: &'a Filter,
+    /// One of this many filtered rows is kept.
+    stride: usize,
 }
 
 impl Part<'_> {
@@ -235,13 +260,13 @@ impl Part<'_> {
             None => self.velocities(&times, &theta, &positions),
         };
         let shape = &self.filter.friction;
-        let kept = trim.min(N)..N.saturating_sub(trim).max(trim.min(N));
+        let kept = || (trim..N.saturating_sub(trim)).step_by(self.stride);
         // memory: each signal is stored as soon as it is filtered
         let store = |to: &mut Vec<f64>, width: usize, signals: &mut dyn Iterator<Item = Vec<f64>>| {
             let begin = to.len();
-            to.resize(begin + kept.len() * width, 0.0);
+            to.resize(begin + kept().len() * width, 0.0);
             for (k, x) in signals.enumerate() {
-                to.iter_mut().skip(begin + k).step_by(width).zip(&x[kept.clone()]).for_each(|(to, x)| *to = *x);
+                to.iter_mut().skip(begin + k).step_by(width).zip(kept()).for_each(|(to, row)| *to = x[row]);
             }
         };
         let smooth = |mut x: Vec<f64>| {
@@ -273,7 +298,7 @@ impl Part<'_> {
         let mut forces = (0..n).map(|k| {
             let rough = raw(&self.log.tau, n, k);
             let x = smooth(rough.clone());
-            removed[k] += kept.clone().map(|k| (rough[k] - x[k]).powi(2)).sum::<f64>();
+            removed[k] += kept().map(|k| (rough[k] - x[k]).powi(2)).sum::<f64>();
             x
         });
         store(&mut samples.tau, n, &mut forces);
@@ -283,7 +308,7 @@ impl Part<'_> {
         for ((_, to), (_, table)) in samples.wrenches.iter_mut().zip(&self.log.wrenches) {
             store(to, 6, &mut (0..6).map(|k| smooth(raw(table, 6, k))));
         }
-        for k in kept.clone() {
+        for k in kept() {
             samples.t.push(times[k]);
             let nearest = self.nearest(&t, times[k]);
             samples.is_valid.extend((0..n).map(|j| !self.rows.saturated[nearest * n + j]));
