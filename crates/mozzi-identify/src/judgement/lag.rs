@@ -3,12 +3,11 @@
 use super::residuals::Residual;
 use crate::Finding;
 
-/// A lag is clear above this many standard deviations of white and of coloured residuals, and above this many steps of
-/// time: the fit hides a part of it.
-const CLEAR: (f64, f64, f64) = (3.0, 2.0, 1.0);
+/// One joint's lag is clear above this many standard deviations, and above this many steps of time.
+const CLEAR: (f64, f64) = (3.0, 1.0);
 
-/// One joint's lag is its own if it is this many times as far from the others' median as any other.
-const OWN: f64 = 3.0;
+/// It is the joint's own if it is this many times as far from the others' median as any other is for sure.
+const OWN: f64 = 8.0;
 
 /// A common lag, or that of one joint.
 pub fn check(log: &str, residuals: &[Residual], step: f64) -> Option<Finding> {
@@ -43,19 +42,18 @@ fn of_one(log: &str, residuals: &[Residual], step: f64) -> Option<Finding> {
         let mut others: Vec<f64> = (0..residuals.len()).filter(|&i| i != j).map(|i| residuals[i].lag).collect();
         others.sort_by(f64::total_cmp);
         let Some(&median) = others.get(others.len() / 2).filter(|_| others.len() > 1) else { return false };
-        // as far as it is certain
-        let apart = |i: usize| ((residuals[i].lag - median).abs() - CLEAR.0 * residuals[i].lag_deviation).max(0.0);
-        let most = (0..residuals.len()).filter(|&i| i != j).map(apart).fold(0.0, f64::max);
+        let apart = |i: usize| (residuals[i].lag - median).abs();
+        let sure = |i: usize| (apart(i) - residuals[i].lag_deviation).max(0.0);
+        let most = (0..residuals.len()).filter(|&i| i != j).map(sure).fold(0.0, f64::max);
         let (lag, deviation) = (residuals[j].lag.abs(), residuals[j].lag_deviation);
-        let is_clear = lag > deviation * CLEAR.0.max(CLEAR.1 * residuals[j].colour()) && lag > CLEAR.2 * step;
-        is_clear && apart(j) > OWN * most
+        lag > CLEAR.0 * deviation && lag > CLEAR.1 * step && apart(j) > OWN * most
     };
     let found = &residuals[(0..residuals.len()).find(is_own)?];
     Some(Finding::warning(
         "lag",
         format!(
             "{log}: the force of {} comes at least {:.1} ms {} than predicted, those of the other joints do not: its \
-             column is delayed, by a filter or a slower bus; log it with its own time, or shift it",
+             column is delayed, by a filter or a slower bus, or it has friction with memory; log it with its own time",
             found.name,
             1e3 * found.lag.abs(),
             if found.lag > 0.0 { "later" } else { "earlier" }
