@@ -1,5 +1,5 @@
-//! Goals of the end effector: by flags, or tables in CSV files with columns x y z of the origin, and qw qx qy qz or roll
-//! pitch yaw of the orientation, in {s}.
+//! Goals of the end effector: by flags, or tables in CSV files with columns x y z of the origin, and qw qx qy qz or
+//! roll pitch yaw of the orientation, in {s}.
 
 use crate::angles::question;
 use crate::failure::{Failure, Result};

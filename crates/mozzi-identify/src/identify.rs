@@ -3,7 +3,7 @@
 use crate::compress::{Compressed, Evidence, PARTS};
 use crate::estimate::least_squares::Decomposition;
 use crate::finding::keep_causes;
-use crate::judgement::{rest, suspicion};
+use crate::judgement::{rest, short, suspicion};
 use crate::predict::predict_some;
 use crate::setup::{Estimates, Limits, Setup, without_constraints};
 use crate::signals::{Filter, Samples, prepare};
@@ -148,7 +148,7 @@ pub fn identify<'m>(
         findings.extend(more);
     }
     if options.choice.links {
-        findings.extend(rest::short(logs, &samples));
+        findings.extend(short::check(logs, &samples));
         keep_causes(&mut findings);
     }
     match options.trust_log {

@@ -1,9 +1,7 @@
 //! A recorded motion, and the check of its rows.
 
-use crate::mend::clock;
 use crate::{Error, Finding, order};
 use mozzi::{FrameId, Freedom, Model, SpatialInertia};
-use std::borrow::Cow;
 
 /// A recorded motion with its torques. Tables are by rows: N rows of nq or n numbers in the model's order.
 #[derive(Clone, Debug, Default)]
@@ -56,14 +54,6 @@ impl Log {
     /// The number of rows.
     pub fn rows(&self) -> usize {
         self.t.len()
-    }
-
-    /// Times in seconds, if those of the log are in another unit or have too few digits, and what was found about them.
-    /// Forces may be missing.
-    pub fn with_clock(&self, model: &Model) -> Option<(Vec<f64>, Vec<Finding>)> {
-        let (mut log, mut findings) = (Cow::Borrowed(self), Vec::new());
-        clock::mend(model, &mut log, &mut findings);
-        (!findings.is_empty()).then(|| (log.into_owned().t, findings))
     }
 
     /// All tables with their names and widths.

@@ -48,8 +48,8 @@ impl PyModel {
     /// ----------
     /// quantity : str
     ///     Name of the quantity: 'mass_matrix', 'M', 'velocity_product', 'gravity_forces', 'inverse_dynamics', …;
-    ///     'mass_matrix_inverse', 'forward_dynamics', 'task_space_dynamics' up to four velocities; or 'base_parameters',
-    ///     for π_b and Y_b of τ = Y_b π_b.
+    ///     'mass_matrix_inverse', 'forward_dynamics', 'task_space_dynamics' up to four velocities; or
+    ///     'base_parameters', for π_b and Y_b of τ = Y_b π_b.
     /// frame : str, optional
     ///     Its frame. Default: the end effector.
     /// symbols : str, optional

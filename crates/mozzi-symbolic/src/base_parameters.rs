@@ -1,5 +1,5 @@
-//! The base parameters of a robot in symbols: the combinations of inertial parameters that its forces depend on, and the
-//! regressor that belongs to them (Gautier 1991), exactly.
+//! The base parameters of a robot in symbols: the combinations of inertial parameters that its forces depend on, and
+//! the regressor that belongs to them (Gautier 1991), exactly.
 
 use crate::angles;
 use crate::atom::{Atom, Class, Id, Name};

@@ -48,8 +48,8 @@ pub(crate) fn value_at<'a>(point: &'a Point, names: &[Expression]) -> impl Fn(&E
     move |expression| expression.value(&atom, &plain, &values)
 }
 
-/// Calls a check with the outputs of kernels at random rational points: `outputs` gives them for the robot's numbers and
-/// the inputs there.
+/// Calls a check with the outputs of kernels at random rational points: `outputs` gives them for the robot's numbers
+/// and the inputs there.
 pub(crate) fn at_points(
     quantity: &'static str,
     outputs: impl Fn(&dyn Fn(Symbol) -> Symbol, &[Vec<Symbol>]) -> Vec<Vec<Symbol>>,

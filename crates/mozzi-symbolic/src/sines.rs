@@ -44,8 +44,8 @@ fn size(table: &Table, terms: &[Term]) -> (usize, i32, usize) {
 /// A sine or cosine of one cumulative sum, with its power.
 type Single = (usize, bool);
 
-/// The shortest of: the sum as it is; products with cosines, or sines, of each cumulative sum, or else of each angle, to
-/// the first power only.
+/// The shortest of: the sum as it is; products with cosines, or sines, of each cumulative sum, or else of each angle,
+/// to the first power only.
 fn shorter(table: &mut Table, terms: Vec<Term>, group: usize, by_sums: bool) -> Vec<Term> {
     let groups: HashMap<Id, Option<usize>> =
         terms.iter().flat_map(|(m, _)| m.factors()).map(|(id, _)| (id, table.group(id))).collect();

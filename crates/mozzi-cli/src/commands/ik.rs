@@ -29,7 +29,8 @@ pub struct IkArguments {
     robot: RobotArguments,
     #[command(flatten)]
     goal: GoalArguments,
-    /// Goals in a CSV file, one per row: columns x y z, or with qw qx qy qz or roll pitch yaw, or these alone ("-": standard input)
+    /// Goals in a CSV file, one per row: columns x y z, or with qw qx qy qz or roll pitch yaw, or these alone ("-":
+    /// standard input)
     #[arg(long = "in", value_name = "FILE.csv", conflicts_with_all = ["position", "rpy", "quaternion"])]
     input: Option<String>,
     /// File for the table theta_1 …, reached, angle, distance, starts, iterations [default: standard output]

@@ -96,7 +96,7 @@ impl Mistake {
         }
     }
 
-    /// What was done, with the remedy if it is not obvious.
+    /// The mistake in words, with the remedy if it is not obvious.
     pub fn text(&self, model: &Model) -> String {
         let names: Vec<&str> = model.velocity_names().collect();
         match *self {

@@ -8,6 +8,7 @@ mod mistake;
 pub mod residuals;
 pub(crate) mod rest;
 pub mod sensor;
+pub(crate) mod short;
 pub mod suspicion;
 pub mod velocities;
 

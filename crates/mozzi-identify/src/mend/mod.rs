@@ -1,7 +1,7 @@
 //! Mends what a log's driver got wrong in a way that leaves no doubt: the unit and the resolution of its clock,
 //! sensors that drop out or stay constant, spikes, positions that wrap. What is in doubt is a fault.
 
-pub(crate) mod clock;
+mod clock;
 mod dropouts;
 mod spikes;
 mod stuck;
@@ -50,6 +50,14 @@ fn at(log: &Log, row: usize) -> String {
 }
 
 impl Log {
+    /// Times in seconds, if those of the log are in another unit or have too few digits, and what was found about them.
+    /// Forces may be missing.
+    pub fn with_clock(&self, model: &Model) -> Option<(Vec<f64>, Vec<Finding>)> {
+        let (mut log, mut findings) = (Cow::Borrowed(self), Vec::new());
+        clock::mend(model, &mut log, &mut findings);
+        (!findings.is_empty()).then(|| (log.into_owned().t, findings))
+    }
+
     /// Keeps some rows.
     fn keep(&mut self, is_kept: &dyn Fn(usize) -> bool) {
         let N = self.rows();

@@ -201,7 +201,7 @@ const MANY: usize = 100_000;
 /// Samples in a period of the cut-off that are kept.
 const PER_PERIOD: f64 = 20.0;
 
-/// Of many rows of a filtered signal, one of this many has all that the filter left.
+/// One of this many rows of a filtered signal has all that the filter left.
 fn stride(rows: usize, rate: f64, cutoff: Option<f64>) -> usize {
     let most = cutoff.map_or(1.0, |cutoff| rate / (PER_PERIOD * cutoff));
     (rows / MANY).clamp(1, (most as usize).max(1))

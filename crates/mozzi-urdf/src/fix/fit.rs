@@ -17,7 +17,7 @@ use std::path::Path;
 const MOST_BYTES: u64 = 64 << 20;
 /// No solid is denser, kg/m³: osmium has 22,600.
 const DENSEST: f64 = 25_000.0;
-/// A shape that would be denser tells nothing about its link, kg/m³: a mass in g as one in kg gives at most 1000 times
+/// A shape that would be denser is no evidence for its link, kg/m³: a mass in g as one in kg gives at most 1000 times
 /// [`DENSEST`].
 const ABSURD: f64 = 3e7;
 /// Points on a circle.
@@ -89,7 +89,7 @@ impl Solid {
         [0, 1, 2].map(|k| (self.low[k] - c[k]).max(c[k] - self.high[k])).into_iter().fold(0.0, f64::max)
     }
 
-    /// What differs the most from the hull: a moment in these axes, the density, or the centre.
+    /// The largest difference from the hull: a moment in these axes, the density, or the centre.
     pub fn doubt(&self, G: SpatialInertia, R: SO3) -> String {
         let [moments, dense, away] = self.misfits(G, R);
         if away >= moments.max(dense) {

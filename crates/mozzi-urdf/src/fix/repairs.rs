@@ -32,7 +32,7 @@ impl Repairs {
         self.left = [of(Severity::Error), of(Severity::Warning)];
     }
 
-    /// What is left open, each with a code and in a sentence.
+    /// All that is left open, each with a code and in a sentence.
     pub fn notes(&self) -> Vec<(&'static str, String)> {
         let mut notes = Vec::new();
         if let Some(first) = self.unread.values().next() {

@@ -58,8 +58,8 @@ impl<C: Scalar> Model<C> {
     }
 
     /// The end-effector frame: the one set in the description; else the leaf that is named as a tool (`tool0`, `tcp`,
-    /// `ee_link`, `end_effector`, alone or after a prefix; the first of these words, if their origin on a moving link is
-    /// one); else the only leaf of a serial chain, or the first of equal frames.
+    /// `ee_link`, `end_effector`, alone or after a prefix; the first of these words, if all so named have one origin);
+    /// else the only leaf of a serial chain, or the first of equal frames.
     ///
     /// # Errors
     /// [`Error::NoEndEffector`] with the candidates if the robot branches and none of these is one frame.
