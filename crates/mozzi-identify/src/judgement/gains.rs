@@ -69,6 +69,11 @@ impl Fit {
         self.left(1.0)
     }
 
+    /// The share that is left without τ̂.
+    pub fn without(&self) -> f64 {
+        self.left(0.0)
+    }
+
     /// The share that is left with the best a that a wrong mass may explain.
     pub fn unexplained_by_masses(&self) -> f64 {
         let (low, high) = BY_MASSES;
@@ -77,7 +82,7 @@ impl Fit {
 
     /// The best a.
     pub fn gain(&self) -> Gain {
-        let (c, without) = (|i, j| self.covariance(i, j), self.left(0.0));
+        let (c, without) = (|i, j| self.covariance(i, j), self.without());
         let square = c(PREDICTED, PREDICTED);
         if !(square > 0.0) {
             return Gain { factor: 1.0, unexplained: 1.0, without };

@@ -72,13 +72,14 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
     let as_it_is = comparison.score(&Mistake::None);
     let all: Vec<(Mistake, f64)> = Mistake::all(model, comparison.limits.is_some())
         .into_iter()
-        .map(|mistake| {
-            let score = comparison.score(&mistake);
-            (mistake, score)
+        .filter_map(|mistake| {
+            let (score, without) = comparison.scores(&mistake);
+            // what friction and armature explain alone is no evidence
+            (without - score > CLEAR).then_some((mistake, score))
         })
         .collect();
-    let Some((best, least)) = all.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(Vec::new()) };
-    let (best, least) = (best.clone(), least.min(as_it_is));
+    let first = all.iter().min_by(|a, b| a.1.total_cmp(&b.1)).cloned();
+    let (best, least) = first.filter(|(_, score)| *score < as_it_is).unwrap_or((Mistake::None, as_it_is));
     let of_other_kind = all.iter().filter(|(mistake, _)| mistake.code() != best.code()).map(|(_, score)| *score);
     let is_apart = of_other_kind.fold(f64::MAX, f64::min) - least > APART;
     let share = |score: f64| (score / names.len() as f64).exp();
@@ -144,7 +145,15 @@ impl<'a> Comparison<'a> {
 
     /// Σ_j log of the share of force j that the robot, with friction, armature and an offset fitted, does not predict.
     fn score(&mut self, mistake: &Mistake) -> f64 {
-        self.sums(mistake).iter().map(|fit| fit.unexplained().max(1e-12).ln()).sum()
+        self.scores(mistake).0
+    }
+
+    /// The score, and that of friction, armature and offset alone.
+    fn scores(&mut self, mistake: &Mistake) -> (f64, f64) {
+        let log = |share: f64| share.max(1e-12).ln();
+        self.sums(mistake)
+            .iter()
+            .fold((0.0, 0.0), |(with, without), fit| (with + log(fit.unexplained()), without + log(fit.without())))
     }
 
     /// Whether nearly nothing is left once the mistake is undone.
