@@ -112,6 +112,7 @@ impl MotorArguments {
         let fixed = model.with_base(Base::Fixed)?;
         let (samples, is_of_joints) = table_file::read_joints(file, model, &fixed, &motion::HOW)?;
         let samples = motion::mended(samples, if is_of_joints { &fixed } else { model })?;
+        motion::check(&samples)?;
         let times = samples.times()?;
         let theta = samples.need("theta", model)?;
         // does the table describe the base and the joints, or the joints only?
