@@ -134,7 +134,9 @@ struct Comparison<'a> {
 impl<'a> Comparison<'a> {
     fn new(model: &'a Model, samples: &'a Samples) -> Self {
         let step = samples.count().div_ceil(COMPARED);
-        let rows = (0..samples.count()).step_by(step).collect();
+        // at uneven distances: a periodic motion may repeat in a multiple of the step
+        let uneven = (0..samples.count()).step_by(step).enumerate().map(|(k, row)| row + k * 7919 % step);
+        let rows = uneven.filter(|row| *row < samples.count()).collect();
         let limit = |name: &str| {
             let joint = model.joints().find(|joint| joint.name == name)?;
             joint.limits.effort.filter(|limit| *limit > 0.0 && limit.is_finite())
