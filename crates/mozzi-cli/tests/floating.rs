@@ -118,8 +118,8 @@ fn wrong_layouts() {
         assert!(code == 1 && message.contains(words), "{message}");
     };
     wrong(
-        &["terms", "ur5", "--floating", "--theta", "0,0,0,0,0,0"],
-        "--theta has 6 entries, expected 13: base quaternion (w, x, y, z), base origin, then 6 joints",
+        &["terms", "ur5", "--floating", "--theta", "0,0,0,0,0"],
+        "--theta has 5 entries, expected 13: base quaternion (w, x, y, z), base origin, then 6 joints",
     );
     wrong(
         &["terms", "ur5", "--floating", "--dtheta", "0"],
