@@ -29,7 +29,7 @@ fn what_is_not_there_is_said_so() {
     let message = open("ur6").expect_err("no such robot").to_string();
     assert_eq!(
         message,
-        "`ur6` is neither a file nor one of the embedded robots `anymal`, `double_pendulum`, `furuta_pendulum`, `panda`, `two_link_planar`, `ur5`"
+        "`ur6` is neither a file nor one of the embedded robots `anymal`, `double_pendulum`, `furuta_pendulum`, `panda`, `two_link_planar`, `ur5`; did you mean `ur5`?"
     );
     assert!(matches!(load("no/such/file.urdf"), Err(LoadError::File { .. })));
     assert!(matches!(load("."), Err(LoadError::File { .. })), "a folder");
