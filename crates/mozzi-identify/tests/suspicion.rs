@@ -8,7 +8,7 @@ use mozzi_identify::judgement::judge;
 use mozzi_identify::signals::{Cutoff, Filter};
 use mozzi_identify::{Choice, Finding, Level, Log, Options, Sensor, identify};
 
-/// What is reported about a log, notes apart, if faults do not stop it.
+/// The warnings and faults of a log; faults do not stop the identification here.
 fn findings(model: &Model, log: &Log, cutoff: Cutoff) -> Vec<Finding> {
     let filter = Filter { cutoff, ..Filter::default() };
     let options = Options { filter, choice: Choice::all(Sensor::Link), trust_log: true, ..Options::default() };

@@ -38,7 +38,7 @@ pub fn embedded(robot: &str) -> &'static str {
     mozzi_urdf::embedded::text(robot).expect(robot)
 }
 
-/// The formulas of a page of text, each line with single spaces.
+/// The lines of a page without its legend, spaces made single.
 pub fn formulas(derivation: &Derivation) -> String {
     let text = derivation.print(Language::Text);
     let formulas = text.split("\n\n").next().expect("formulas");

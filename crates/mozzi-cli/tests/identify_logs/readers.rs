@@ -8,7 +8,7 @@ use std::path::Path;
 /// Names of joints in the columns.
 const JOINTS: &str = "t,theta_joint1,theta_joint2,dtheta_joint1,dtheta_joint2,tau_joint1,tau_joint2";
 
-/// What a command prints on standard error.
+/// Standard error of a command.
 fn notes(arguments: &[&str]) -> String {
     let output = mozzi(arguments);
     let notes = String::from_utf8_lossy(&output.stderr).into_owned();

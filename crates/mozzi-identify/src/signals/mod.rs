@@ -201,7 +201,7 @@ const MANY: usize = 100_000;
 /// Samples in a period of the cut-off that are kept.
 const PER_PERIOD: f64 = 20.0;
 
-/// One of this many rows of a filtered signal has all that the filter left.
+/// A filtered signal is known from every k-th row; this k.
 fn stride(rows: usize, rate: f64, cutoff: Option<f64>) -> usize {
     let most = cutoff.map_or(1.0, |cutoff| rate / (PER_PERIOD * cutoff));
     (rows / MANY).clamp(1, (most as usize).max(1))

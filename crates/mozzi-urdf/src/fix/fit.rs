@@ -1,20 +1,14 @@
 //! Comparison of a link's inertia with its shape.
 
+use crate::XacroArguments;
 use crate::geometry::hull::convex_hull;
 use crate::geometry::moments::{Filling, Moments, moments};
-use crate::geometry::surface::Surface;
-use crate::geometry::{Form, Purpose, Shape, locate};
-use crate::report::visible::visible;
-use crate::{XacroArguments, files};
+use crate::geometry::{Form, Purpose, Shape, scaled_surface};
 use mozzi::spatial::Rounded;
 use mozzi::{SO3, SpatialInertia, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::OsStr;
-use std::fmt::Display;
 use std::path::Path;
 
-/// A larger mesh is not read.
-const MOST_BYTES: u64 = 64 << 20;
 /// No solid is denser, kg/m³: osmium has 22,600.
 const DENSEST: f64 = 25_000.0;
 /// A shape that would be denser is no evidence for its link, kg/m³: a mass in g as one in kg gives at most 1000 times
@@ -203,13 +197,6 @@ fn points_of(shape: &Shape, robot: &Path, mesh_root: Option<&Path>) -> Result<Ve
             let ball = dome(1.0, 0.0, 1.0).chain(dome(1.0, 0.0, -1.0));
             ball.map(|p| Vec3([0, 1, 2].map(|k| p.0[k] * radii[k]))).collect()
         }
-        Form::Mesh { file, scale } => {
-            let path = locate(robot, file, mesh_root).map_err(|why| why.to_string())?;
-            let wrong = |why: &dyn Display| format!("mesh {}: {why}", visible(file));
-            let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
-            let bytes = files::read(&path, MOST_BYTES).map_err(|why| wrong(&why))?;
-            let surface = Surface::read(&ending, &bytes).map_err(|why| wrong(&why))?;
-            surface.vertices.iter().map(|v| Vec3([0, 1, 2].map(|k| v.0[k] * scale[k]))).collect()
-        }
+        Form::Mesh { file, scale } => scaled_surface(robot, file, *scale, mesh_root)?.vertices,
     })
 }

@@ -4,7 +4,10 @@ use super::locate;
 use super::moments::{Filling, moments};
 use super::surface::Surface;
 use crate::files;
+use crate::report::visible::visible;
 use mozzi::{SpatialInertia, Vec3};
+use std::ffi::OsStr;
+use std::fmt::Display;
 use std::path::Path;
 
 /// A larger mesh is not read.
@@ -16,14 +19,26 @@ const MOST_BYTES: u64 = 64 << 20;
 /// # Errors
 /// The reason why the mesh is not found, not read or no closed surface.
 pub fn filled_mesh(robot_file: &Path, mesh: &str, scale: [f64; 3]) -> Result<SpatialInertia, String> {
-    let path = locate(robot_file, mesh, None).map_err(|error| error.to_string())?;
-    let format = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let file = files::read(&path, MOST_BYTES).map_err(|error| error.to_string())?;
-    let mut surface = Surface::read(&format, &file)?;
-    surface.vertices.iter_mut().for_each(|v| *v = Vec3([0, 1, 2].map(|k| v.0[k] * scale[k])));
+    let mut surface = scaled_surface(robot_file, mesh, scale, None)?;
     if scale.iter().product::<f64>() < 0.0 {
         surface.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2)); // a mirrored surface is turned outwards
     }
     let solid = moments(&surface.vertices, &surface.triangles, Filling::Exact)?;
     Ok(SpatialInertia::new(solid.size, solid.center, solid.I))
+}
+
+/// The mesh in the shape's frame, found as by [`locate`]; its triangles are as in the file.
+pub(crate) fn scaled_surface(
+    robot_file: &Path,
+    mesh: &str,
+    scale: [f64; 3],
+    mesh_root: Option<&Path>,
+) -> Result<Surface, String> {
+    let path = locate(robot_file, mesh, mesh_root).map_err(|why| why.to_string())?;
+    let wrong = |why: &dyn Display| format!("mesh {}: {why}", visible(mesh));
+    let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
+    let bytes = files::read(&path, MOST_BYTES).map_err(|why| wrong(&why))?;
+    let mut surface = Surface::read(&ending, &bytes).map_err(|why| wrong(&why))?;
+    surface.vertices.iter_mut().for_each(|v| *v = Vec3([0, 1, 2].map(|k| v.0[k] * scale[k])));
+    Ok(surface)
 }

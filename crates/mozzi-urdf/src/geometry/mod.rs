@@ -17,6 +17,7 @@ pub use contact::{FRICTION, ShapeContacts, contact_points};
 pub(crate) use files::Own;
 pub use files::{NotLocated, locate};
 pub use filled::filled_mesh;
+pub(crate) use filled::scaled_surface;
 pub use mesh::check_mesh;
 pub use shape::{Form, Purpose, Shape};
 pub use vertices::mesh_corners;

@@ -1,4 +1,4 @@
-//! What a repair may follow from, and what it may not: twins, shapes, names; and its effect and reason.
+//! The evidence for a repair: twins, shapes and names that count, and others that do not; its effect and its reason.
 
 use super::{LIMIT, SOUND, arm, found};
 use mozzi_urdf::fix::{apply, proposals};

@@ -11,7 +11,7 @@ use crate::compare::constants::{home, same_body};
 use mozzi::{Description, SE3, SO3, SpatialInertia, Sym3, Vec3};
 use std::collections::BTreeMap;
 
-/// The causes in the inertias of all bodies that move, and notes on bodies that only divide it among their links in
+/// The causes in the inertias of all bodies that move, and notes on bodies of equal inertia whose links share it in
 /// another way. `home_a` has the first robot's links with the causes of its joints accounted for.
 pub fn causes(
     matched: &Matched,
