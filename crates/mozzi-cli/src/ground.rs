@@ -7,6 +7,7 @@ use crate::robot::RobotArguments;
 use clap::Args;
 use mozzi::{Model, SE3, Vec3};
 use mozzi_sim::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
+use mozzi_urdf::counted;
 use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, geometry_with};
 use mozzi_urdf::json::{At, Object, Read};
 use std::path::Path;
@@ -148,11 +149,6 @@ impl GroundArguments {
 const DEEPEST: f64 = 0.05;
 /// So far within a plane no base is lifted, m: rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// `1 plane`, `2 planes`.
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}
 
 /// Moves a floating base up or down, so that its lowest contact point is on the plane that is nearest; a start that was
 /// given is lifted out of the ground only.

@@ -76,7 +76,7 @@ pub use report::error::LoadError;
 pub use report::explain::{codes, explain, nearest_code, remedy};
 #[cfg(feature = "pretty")]
 pub use report::pretty::{Style, pretty};
-pub use report::spelling::did_you_mean;
+pub use report::spelling::{counted, did_you_mean};
 pub use report::visible::visible;
 pub use report::why::why;
 pub use settings::{Policy, Settings};

@@ -3,6 +3,7 @@
 use crate::failure::{self, Failure, Result};
 use crate::tables::samples::Samples;
 use mozzi::Model;
+use mozzi_urdf::counted;
 
 /// A column with more cells empty than this share was logged at other times than the rest.
 const SPARSE: f64 = 0.05;
@@ -39,7 +40,7 @@ pub fn join(samples: &mut Samples, model: &Model) -> Result<()> {
         let width = width(table);
         rows.iter().filter(|&&row| table[row * width + k].is_nan()).count() as f64 / rows.len() as f64
     };
-    let is_sparse = samples.tables.values().any(|table| (0..width(table)).any(|k| share(table, k, &rows) > SPARSE));
+    let mut is_sparse = samples.tables.values().any(|table| (0..width(table)).any(|k| share(table, k, &rows) > SPARSE));
     let is_other = N as f64 - rows.len() as f64 > SPARSE * N as f64;
     if is_other {
         failure::note(&format!(
@@ -59,11 +60,15 @@ pub fn join(samples: &mut Samples, model: &Model) -> Result<()> {
                 joined += usize::from(interpolate(&t, table, (k, width), &all, &rows));
             }
         }
-        failure::note(&format!(
-            "{file}: {joined} columns have numbers at other times than the first position; they are interpolated at its \
-             {} of {count} rows",
-            rows.len()
-        ));
+        if joined > 0 {
+            failure::note(&format!(
+                "{file}: numbers of {} at other times than the first position are interpolated at its {} of {count} rows",
+                counted(joined, "column"),
+                rows.len()
+            ));
+        } else {
+            (rows, is_sparse) = (all, false);
+        }
     }
     if rows.len() < N && (is_other || is_sparse) {
         samples.keep(&rows);

@@ -48,7 +48,8 @@ fn leave_out(samples: &mut Samples) -> Result<()> {
     let whole: Vec<usize> = (0..N).filter(|&row| is_whole(row)).collect();
     let missing = N - whole.len();
     if let Some(first) = (0..N).find(|&row| !is_whole(row)) {
-        let what = format!("{missing} of {N} rows lack numbers or hold NaN, first {}", samples.place(first));
+        let (file, place) = (&samples.file, samples.place(first));
+        let what = format!("{file}: {missing} of {N} rows lack numbers or hold NaN, first {place}");
         if missing as f64 > Log::MOST_MISSING * N as f64 {
             let most = 100.0 * Log::MOST_MISSING;
             return Err(Failure::wrong(format!("{what}, expected at most {most} %; delete these rows")));

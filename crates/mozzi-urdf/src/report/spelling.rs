@@ -32,7 +32,8 @@ pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k st
 }
 
 /// A number and its noun: "1 number", "3 numbers".
-pub(crate) fn counted(n: usize, noun: &str) -> String {
+#[must_use]
+pub fn counted(n: usize, noun: &str) -> String {
     if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") }
 }
 
