@@ -8,7 +8,7 @@ use clap::Args;
 use mozzi::{Model, SE3, Vec3};
 use mozzi_sim::{ContactPoint, Contacts, Plane, PlaneMotion, Support};
 use mozzi_urdf::counted;
-use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, geometry_with};
+use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, end_points, geometry_with};
 use mozzi_urdf::json::{At, Object, Read};
 use std::path::Path;
 
@@ -133,15 +133,13 @@ impl GroundArguments {
         if !found.points.is_empty() {
             return Ok(found.points);
         }
-        let description = model.description();
-        let is_end = |name: &str| !description.joints.iter().any(|joint| joint.parent == name);
-        let ends: Vec<&str> = description.links.iter().map(|link| &*link.name).filter(|name| is_end(name)).collect();
-        let listed = ends.join(", ");
+        let ends = end_points(model, mu, restitution);
+        let listed = ends.iter().map(|point| point.name.as_str()).collect::<Vec<_>>().join(", ");
         failure::note(&format!(
             "{}: the robot has no collision shapes; the origins of its last links touch: {listed}",
             self.flag()
         ));
-        ends.into_iter().map(of_frame).collect()
+        Ok(ends)
     }
 }
 

@@ -65,8 +65,16 @@ fn with_unit(place: impl Display, text: &str) -> Result<(f64, Unit)> {
     match value(&text.replace('−', "-")) {
         Some((x, unit)) if x.is_finite() => Ok((x, unit)),
         Some(_) => wrong("a finite number"),
+        None if has_unit(text) => wrong("a number without its unit"),
         None => wrong("a number"),
     }
+}
+
+/// "2s", "5 kg": a number and letters.
+fn has_unit(text: &str) -> bool {
+    let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c)).trim_start();
+    let number = text[..text.len() - unit.len()].trim_end();
+    number.parse::<f64>().is_ok() && unit.starts_with(char::is_alphabetic)
 }
 
 /// True for a number or an angle as [`angle`] reads it.

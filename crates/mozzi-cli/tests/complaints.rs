@@ -190,6 +190,10 @@ fn wrong_numbers() {
         &["--tip-wrench has 1 entry, expected 6", "m_x"],
     );
     wrong(&["simulate", "ur5", "--step", "-0.1"], &["step is -0.1", "positive"]);
+    for time in ["2s", "2 s", "1.5e3ms"] {
+        let expected = format!("--time is `{time}`, expected a number without its unit");
+        wrong(&["simulate", "ur5", "--time", time], &[&expected]);
+    }
     wrong(&["simulate", "ur5", "--time", "soon"], &["--time is `soon`, expected a number"]);
 }
 

@@ -261,7 +261,7 @@ fn through_sdf_and_mjcf_the_robot_stays() {
     let folder = folder("formats");
     let path = |name: &str| folder.join(name).to_str().expect("text").to_string();
     for (robot, told) in
-        [("ur5", "cannot express joint `shoulder_pan_joint`: velocity limit"), ("panda", "velocity limit")]
+        [("ur5", "cannot express the velocity limits of `shoulder_pan_joint`, "), ("panda", "the velocity limits of")]
     {
         let (sdf, xml, back) = (path("r.sdf"), path("r.xml"), path("back.urdf"));
         let said = |output: std::process::Output| String::from_utf8(output.stderr).expect("text");

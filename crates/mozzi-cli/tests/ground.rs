@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use common::{complaint, file, folder, json, rows, text};
+use common::{complaint, file, folder, json, mozzi, rows, text};
 use mozzi::Model;
 use mozzi_sim::{Method, Options, Simulation, Zero};
 
@@ -34,6 +34,13 @@ fn dry_friction_holds_an_arm_and_smooth_methods_refuse_it() {
         println!("{method}: {} moves {moved:.1e} rad", found["method"]);
         assert!(moved < 1e-12);
     }
+}
+
+#[test]
+fn without_shapes_the_last_links_that_move_touch() {
+    let said = mozzi(&["simulate", "anymal", "--floating", "--ground", "--time", "0.01"]);
+    let said = String::from_utf8_lossy(&said.stderr).to_string();
+    assert!(said.contains("its last links touch: LF_FOOT, RF_FOOT, LH_FOOT, RH_FOOT\n"), "{said}");
 }
 
 #[test]

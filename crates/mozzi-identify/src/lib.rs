@@ -2,6 +2,7 @@
 mod choice;
 mod columns;
 mod compress;
+mod cores;
 mod describe;
 mod error;
 pub mod estimate;

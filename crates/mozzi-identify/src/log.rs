@@ -154,7 +154,7 @@ impl Log {
     /// The median step of time; a warning if steps vary.
     fn median_step(&self, usable: &[usize], repeated: usize, findings: &mut Vec<Finding>) -> f64 {
         let mut steps: Vec<f64> = usable.windows(2).map(|w| self.t[w[1]] - self.t[w[0]]).collect();
-        steps.sort_by(f64::total_cmp);
+        steps.sort_unstable_by(f64::total_cmp);
         let median = steps[steps.len() / 2];
         let at = |share: f64| steps[((steps.len() - 1) as f64 * share) as usize];
         let spread = (at(0.95) - at(0.05)) / median;

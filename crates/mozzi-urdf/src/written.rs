@@ -7,7 +7,7 @@ use std::fmt;
 pub struct Written {
     /// The text.
     pub text: String,
-    /// Properties that the text omits or changes, each with its element: "joint `a`: velocity limit 2". Empty if
+    /// Properties that the text omits or changes, each with its element: "joint `a`: effort limit 0". Empty if
     /// reading the text gives the same robot up to rounding.
     pub losses: Vec<String>,
     /// Elements that some readers of the format may refuse.

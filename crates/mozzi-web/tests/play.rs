@@ -260,12 +260,7 @@ fn bend(name: &str) -> f64 {
 
 /// The origins of the last links.
 fn feet(model: &Model) -> Vec<mozzi_sim::ContactPoint> {
-    let robot = model.description();
-    let is_end = |name: &str| !robot.joints.iter().any(|joint| joint.parent == name);
-    let ends = robot.links.iter().filter(|link| is_end(&link.name));
-    let point =
-        |name: &str| mozzi_sim::ContactPoint::new(name, model.frame(name).expect("a link"), mozzi::Vec3::zero(), 0.7);
-    ends.map(|link| point(&link.name)).collect()
+    mozzi_urdf::geometry::end_points(model, 0.7, 0.0)
 }
 
 trait Floating {

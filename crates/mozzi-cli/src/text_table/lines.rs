@@ -19,6 +19,12 @@ impl Lines {
         Lines { input, line: 1, length: 0, has_returns: None }
     }
 
+    /// Counts further bytes of the line.
+    fn add(&mut self, bytes: usize) -> io::Result<()> {
+        self.length += bytes as u64;
+        if self.length > LONGEST { Err(self.wrong("is longer than 64 MiB, expected a row")) } else { Ok(()) }
+    }
+
     fn wrong(&self, what: &str) -> io::Error {
         io::Error::other(format!("line {} {what}", self.line))
     }
@@ -34,17 +40,15 @@ impl Read for Lines {
         if has_returns {
             found.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
         }
-        for piece in found.split_inclusive(|&byte| byte == b'\n') {
-            self.length += piece.len() as u64;
-            if piece.contains(&0) {
-                return Err(self.wrong("holds a zero byte, expected text"));
-            }
-            if self.length > LONGEST {
-                return Err(self.wrong("is longer than 64 MiB, expected a row"));
-            }
-            if piece.ends_with(b"\n") {
-                (self.line, self.length) = (self.line + 1, 0);
-            }
+        let zero = memchr::memchr(0, found).unwrap_or(count);
+        let mut begin = 0;
+        for end in memchr::memchr_iter(b'\n', &found[..zero]).map(|k| k + 1) {
+            self.add(end - begin)?;
+            (self.line, self.length, begin) = (self.line + 1, 0, end);
+        }
+        self.add(zero - begin)?;
+        if zero < count {
+            return Err(self.wrong("holds a zero byte, expected text"));
         }
         Ok(count)
     }

@@ -9,7 +9,7 @@ mod lists;
 use crate::columns;
 use crate::failure::{self, Failure, Result};
 use crate::input::{self, Input, cannot};
-use crate::numbers::number;
+use crate::numbers;
 use crate::progress::Progress;
 use crate::recogniser::{GROUPS, Header, Recognised, holds_names};
 use crate::tables::How;
@@ -217,10 +217,12 @@ struct Cells {
 impl Cells {
     /// The number of a cell; a date if it is the time. `place` names the cell in messages.
     fn number(&self, place: impl std::fmt::Display, cell: &str, is_time: bool) -> Result<f64> {
+        let number = |cell: &str| cell.parse::<f64>().ok().filter(|x| x.is_finite() || self.may_miss);
+        if let Some(x) = number(cell) {
+            return Ok(x);
+        }
         let cell = cell.trim();
-        if let Ok(x) = cell.parse::<f64>()
-            && (x.is_finite() || self.may_miss)
-        {
+        if let Some(x) = number(cell) {
             return Ok(x);
         }
         if self.may_miss && is_missing(cell) {
@@ -236,8 +238,8 @@ impl Cells {
             )));
         }
         match self.has_decimal_commas {
-            true => number(place, &cell.replacen(',', ".", 1)),
-            false => number(place, cell),
+            true => numbers::number(place, &cell.replacen(',', ".", 1)),
+            false => numbers::number(place, cell),
         }
     }
 }

@@ -7,11 +7,10 @@ pub use triangle::Triangle;
 
 use crate::Error;
 use crate::columns::{Columns, Equations};
+use crate::cores::each;
 use crate::signals::Samples;
 use mozzi::random::Random;
 use nalgebra::DMatrix;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Parts of a log, of equal length in time.
 pub const PARTS: usize = 10;
@@ -82,29 +81,13 @@ impl Compressed {
     ) -> Result<Self, Error> {
         let n = columns.model.n();
         let empty: Vec<Triangle> = pattern.0.iter().map(|of| Triangle::new(of.len())).collect();
-        let parts: Vec<Mutex<Result<Vec<Triangle>, Error>>> =
-            (0..PARTS).map(|_| Mutex::new(Ok(empty.clone()))).collect();
-        let next = AtomicUsize::new(0);
         let edge = |part: usize| part * samples.count() / PARTS;
-        let work = || {
-            loop {
-                let part = next.fetch_add(1, Ordering::Relaxed);
-                let Some(slot) = parts.get(part) else { return };
-                let mut triangles = empty.clone();
-                let done = fill(columns, pattern, samples, edge(part)..edge(part + 1), weight, &mut triangles);
-                if let Ok(mut slot) = slot.lock() {
-                    *slot = done.map(|()| triangles);
-                }
-            }
-        };
-        let cores = std::thread::available_parallelism().map_or(1, usize::from).min(PARTS);
-        if samples.count() * n < 2000 || cores == 1 {
-            work();
-        } else {
-            std::thread::scope(|scope| (0..cores).for_each(|_| drop(scope.spawn(work))));
-        }
-        let parts = parts.into_iter().map(|part| part.into_inner().unwrap_or_else(|e| e.into_inner()));
-        Ok(Compressed { parts: parts.collect::<Result<_, _>>()?, independent: samples.independent() })
+        let parts = each(PARTS, samples.count() * n * columns.count(), |part| {
+            let mut triangles = empty.clone();
+            fill(columns, pattern, samples, edge(part)..edge(part + 1), weight, &mut triangles).map(|()| triangles)
+        });
+        let parts = parts.into_iter().collect::<Result<_, _>>()?;
+        Ok(Compressed { parts, independent: samples.independent() })
     }
 }
 

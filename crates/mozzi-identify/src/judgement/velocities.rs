@@ -2,6 +2,7 @@
 //! motion, and delays of filters that ran forwards only.
 
 use super::rest::is_at_rest;
+use crate::cores::each;
 use crate::log::Rows;
 use crate::signals::butterworth::LowPass;
 use crate::signals::{derivative, resampled};
@@ -35,13 +36,15 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// The correlation of two signals about their means.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let centred = |x: &[f64]| -> Vec<f64> {
-        let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
-        x.iter().map(|x| x - mean).collect()
-    };
-    let (a, b) = (centred(a), centred(b));
-    let size = (dot(&a, &a) * dot(&b, &b)).sqrt();
-    if size > 0.0 { dot(&a, &b) / size } else { 0.0 }
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
+    let means = (mean(a), mean(b));
+    let (mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0);
+    for (a, b) in a.iter().zip(b) {
+        let (a, b) = (a - means.0, b - means.1);
+        (aa, bb, ab) = (aa + a * a, bb + b * b, ab + a * b);
+    }
+    let size = f64::sqrt(aa * bb);
+    if size > 0.0 { ab / size } else { 0.0 }
 }
 
 impl Signals {
@@ -67,7 +70,7 @@ impl Signals {
             let ends = trim.max(3);
             x.get(ends..x.len().saturating_sub(ends)).unwrap_or_default().to_vec()
         };
-        let all = |table: &[f64], differentiates: bool| (0..n).map(|j| of(table, j, differentiates)).collect();
+        let all = |table: &[f64], differentiates: bool| each(n, n * run.len(), |j| of(table, j, differentiates));
         Some(Signals {
             slopes: all(&log.theta, true),
             logged: all(dtheta, false),
@@ -104,13 +107,16 @@ pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, 
     let rests: Vec<bool> = places.iter().map(|place| is_at_rest(&positions(log, rows, nq, place.q))).collect();
     let moves = |j: usize| size(&signals.slopes[j]) > SLOW * fastest && !rests[j];
     let (mut findings, mut lags, mut scales, mut rough) = (Vec::new(), (0.0, 0.0), Vec::new(), Vec::new());
-    for j in (0..n).filter(|&j| moves(j)) {
-        let (slope, logged, name) = (&signals.slopes[j], &signals.logged[j], names[j]);
-        let own = correlation(slope, logged);
-        let factor = dot(slope, logged) / dot(slope, slope);
-        let others = (0..n).filter(|&i| i != j && moves(i)).map(|i| (i, correlation(&signals.slopes[i], logged)));
+    let moving: Vec<usize> = (0..n).filter(|&j| moves(j)).collect();
+    let correlations = each(moving.len(), n * rows.runs.iter().map(Vec::len).sum::<usize>(), |k| {
+        let (j, logged) = (moving[k], &signals.logged[moving[k]]);
+        let others = moving.iter().filter(|&&i| i != j).map(|&i| (i, correlation(&signals.slopes[i], logged)));
         let best = others.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap_or((j, 0.0));
-        let by_force = correlation(slope, &signals.forces[j]);
+        (correlation(&signals.slopes[j], logged), best, correlation(&signals.slopes[j], &signals.forces[j]))
+    });
+    for (&j, (own, best, by_force)) in moving.iter().zip(correlations) {
+        let (slope, logged, name) = (&signals.slopes[j], &signals.logged[j], names[j]);
+        let factor = dot(slope, logged) / dot(slope, slope);
         let mut fault = |code, text: String| findings.push(Finding::fault(code, format!("{}: {text}", log.name)));
         if own < -ALIKE {
             fault("sign", format!("the velocity of {name} has the opposite sign of its position's derivative"));

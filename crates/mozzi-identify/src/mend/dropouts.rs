@@ -1,6 +1,7 @@
 //! Rows in which a sensor reported 0 for a moment.
 
 use super::{at, axes, quantile};
+use crate::cores::each;
 use crate::{Finding, Log};
 use mozzi::Model;
 use std::borrow::Cow;
@@ -22,16 +23,20 @@ pub fn remove(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
     let known = tables.iter().filter_map(|(what, table)| table.map(|table| (*what, table)));
     for (what, table) in known {
         let mut joints: Vec<String> = Vec::new();
-        for (q, j, name) in axes(model) {
+        let axes = axes(model);
+        let found = each(axes.len(), table.len(), |of| {
+            let (q, j, _) = axes[of];
             let (width, k, far) = if what == "position" { (nq, q, FAR.0) } else { (n, j, FAR.1) };
-            let rows = far_zeros(&(0..N).map(|row| table[row * width + k]).collect::<Vec<_>>(), far);
+            far_zeros(&(0..N).map(|row| table[row * width + k]).collect::<Vec<_>>(), far)
+        });
+        for (rows, (.., name)) in found.into_iter().zip(&axes) {
             if !rows.is_empty() {
-                joints.push(name);
+                joints.push(name.clone());
             }
             rows.into_iter().for_each(|row| is_out[row] = true);
         }
         if !joints.is_empty() {
-            let of = if joints.len() == axes(model).len() { "every joint".into() } else { joints.join(", ") };
+            let of = if joints.len() == axes.len() { "every joint".into() } else { joints.join(", ") };
             signals.push(format!("the {what} of {of}"));
         }
     }
@@ -54,9 +59,12 @@ pub fn remove(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
 
 /// Rows in which a signal that is rarely 0 is exactly 0 and farther from its neighbours than some usual steps.
 fn far_zeros(x: &[f64], far: f64) -> Vec<usize> {
+    if !x.contains(&0.0) {
+        return Vec::new();
+    }
     let N = x.len();
     let kept: Vec<usize> = (0..N).filter(|&row| x[row].is_finite() && x[row] != 0.0).collect();
-    if kept.len() == N || kept.len() < N / 2 {
+    if kept.len() < N / 2 {
         return Vec::new();
     }
     let steps = kept.windows(2).filter(|pair| pair[1] == pair[0] + 1).map(|pair| (x[pair[1]] - x[pair[0]]).abs());
@@ -81,6 +89,9 @@ fn zero_rows(log: &Log) -> Vec<bool> {
         })
     };
     let is_zero: Vec<bool> = (0..N).map(|k| row(k).all(|x| *x == 0.0)).collect();
+    if !is_zero.contains(&true) {
+        return is_zero;
+    }
     let has_none: Vec<usize> = (0..N).filter(|&k| row(k).all(|x| *x != 0.0)).collect();
     let is_between = |k: usize| has_none.first().is_some_and(|&a| a < k) && has_none.last().is_some_and(|&b| b > k);
     (0..N).map(|k| is_zero[k] && is_between(k) && has_none.len() > N / 2).collect()

@@ -64,7 +64,7 @@ impl Log {
         let keep = |table: &mut Vec<f64>| {
             let width = table.len() / N.max(1);
             let rows = (0..N).filter(|&row| is_kept(row));
-            *table = rows.flat_map(|row| table[row * width..][..width].to_vec()).collect();
+            *table = rows.flat_map(|row| &table[row * width..][..width]).copied().collect();
         };
         let known = [&mut self.dtheta, &mut self.ddtheta, &mut self.target].into_iter().flatten();
         [&mut self.theta, &mut self.tau].into_iter().chain(known).for_each(keep);

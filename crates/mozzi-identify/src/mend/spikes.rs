@@ -1,6 +1,7 @@
 //! Forces far outside of what a joint ever has: errors of a transmission.
 
 use super::{at, axes, quantile};
+use crate::cores::each;
 use crate::{Finding, Log};
 use mozzi::Model;
 use std::borrow::Cow;
@@ -19,15 +20,19 @@ pub fn remove(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
     let (N, n) = (log.rows(), model.n());
     let limits: Vec<_> = model.joints().map(|joint| (joint.name.clone(), joint.limits.effort)).collect();
     let mut is_out = vec![false; N];
-    for (_, j, name) in axes(model) {
+    let axes = axes(model);
+    let found = each(axes.len(), log.tau.len(), |k| {
+        let (_, j, name) = &axes[k];
         let force = |row: usize| log.tau[row * n + j].abs();
         let usual = quantile((0..N).map(force).collect(), 0.99);
-        let limit = limits.iter().find(|(joint, _)| *joint == name).and_then(|(_, effort)| *effort);
+        let limit = limits.iter().find(|(joint, _)| joint == name).and_then(|(_, effort)| *effort);
         let bound = match limit.filter(|limit| *limit > 0.0 && usual <= 2.0 * limit) {
             Some(limit) => (ABOVE_USUAL * usual).min(ABOVE_LIMIT * limit).max(limit),
             None => ABOVE_USUAL * usual,
         };
-        let spikes: Vec<usize> = (0..N).filter(|&row| force(row) > bound).collect();
+        (usual, bound, (0..N).filter(|&row| force(row) > bound).collect::<Vec<usize>>())
+    });
+    for ((usual, bound, spikes), (_, j, name)) in found.into_iter().zip(&axes) {
         let Some(&first) = spikes.first().filter(|_| usual > 0.0 && spikes.len() as f64 <= MOST * N as f64) else {
             continue;
         };

@@ -1,6 +1,7 @@
 //! Signals that are constant while the robot moves: encoders that were not read, forces that were not measured.
 
 use super::{axes, quantile};
+use crate::cores::each;
 use crate::{Finding, Level, Log};
 use mozzi::Model;
 use std::borrow::Cow;
@@ -33,9 +34,10 @@ pub fn check(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>)
     let column = |table: &[f64], width: usize, k: usize| -> Vec<f64> {
         rows.iter().map(|&row| table[row * width + k]).collect()
     };
-    let (mut without_velocity, mut is_out, mut more) = (Vec::new(), vec![false; N], Vec::new());
     let joints = axes(model);
-    for (q, j, name) in &joints {
+    let found = each(joints.len(), log.theta.len(), |k| {
+        let (q, j, name) = &joints[k];
+        let mut found = Stuck::default();
         let theta = Signal { t: &t, x: column(&log.theta, nq, *q) };
         let dtheta = log.dtheta.as_ref().map(|table| column(table, n, *j));
         let whole = 0..rows.len();
@@ -48,7 +50,7 @@ pub fn check(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>)
         let is_read = |run: &Range<usize>| !(dtheta.as_ref().is_some_and(|v| theta.passes(v, run)) || theta.stops(run));
         let encoder = stuck(&theta.x, &|run| !is_read(run));
         if let Some(run) = encoder.first() {
-            more.push(Finding::fault(
+            found.findings.push(Finding::fault(
                 "stuck",
                 format!(
                     "{}: the position of {name} is constant, {}, {}, although the joint moves: its encoder was not read; \
@@ -58,13 +60,13 @@ pub fn check(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>)
                     where_(&encoder)
                 ),
             ));
-            continue; // nothing else is judged by these positions
+            return found; // nothing else is judged by these positions
         }
         if let Some(v) = &dtheta {
             let runs = theta.long_runs(v).into_iter().filter(|run| theta.leaves(v[run.start], run));
             let runs: Vec<Range<usize>> = runs.collect();
             if let Some(run) = runs.first() {
-                without_velocity.push((name.clone(), v[run.start] + 0.0, runs.clone())); // no -0
+                found.velocity = Some((name.clone(), v[run.start] + 0.0, runs.clone())); // no -0
             }
         }
         let tau = column(&log.tau, n, *j);
@@ -79,12 +81,19 @@ pub fn check(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>)
                 where_(&forces)
             );
             if count as f64 > MOST * rows.len() as f64 {
-                more.push(Finding::fault("stuck", format!("{what} in most of the log; log it")));
+                found.findings.push(Finding::fault("stuck", format!("{what} in most of the log; log it")));
             } else {
-                more.push(Finding::warning("stuck", format!("{what}; these {count} rows are left out")));
-                forces.iter().for_each(|run| (rows[run.start]..=rows[run.end - 1]).for_each(|row| is_out[row] = true));
+                found.findings.push(Finding::warning("stuck", format!("{what}; these {count} rows are left out")));
+                found.forces = forces;
             }
         }
+        found
+    });
+    let (mut without_velocity, mut is_out, mut more) = (Vec::new(), vec![false; N], Vec::new());
+    for mut of in found {
+        more.append(&mut of.findings);
+        without_velocity.extend(of.velocity);
+        of.forces.iter().for_each(|run| (rows[run.start]..=rows[run.end - 1]).for_each(|row| is_out[row] = true));
     }
     more.extend(of_velocities(log, &t, joints.len(), &without_velocity));
     let is_fault = more.iter().any(|finding| finding.level == Level::Fault);
@@ -92,6 +101,16 @@ pub fn check(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>)
     if !is_fault && is_out.contains(&true) {
         log.to_mut().keep(&|row| !is_out[row]);
     }
+}
+
+/// The stuck signals of one joint.
+#[derive(Default)]
+struct Stuck {
+    findings: Vec<Finding>,
+    /// A velocity's joint, its value and where it is constant.
+    velocity: Option<(String, f64, Vec<Range<usize>>)>,
+    /// Where the force is constant.
+    forces: Vec<Range<usize>>,
 }
 
 /// Velocities that do not follow the positions for a while.
@@ -118,8 +137,10 @@ fn fresh_rows(log: &Log) -> Vec<usize> {
     let tables: Vec<&[f64]> =
         [log.theta.as_slice(), log.tau.as_slice()].into_iter().chain(log.dtheta.as_deref()).collect();
     let differs = |row: usize| {
-        let of = |table: &[f64], row: usize, width: usize| table[row * width..][..width].to_vec();
-        tables.iter().any(|table| of(table, row, table.len() / N) != of(table, row - 1, table.len() / N))
+        tables.iter().any(|table| {
+            let width = table.len() / N;
+            table[row * width..][..width] != table[(row - 1) * width..][..width]
+        })
     };
     (0..N).filter(|&row| row == 0 || differs(row)).collect()
 }

@@ -1,6 +1,7 @@
 //! Positions that wrap at a half or a whole turn, and positions that jump.
 
 use super::{at, axes, quantile};
+use crate::cores::each;
 use crate::{Finding, Log};
 use mozzi::Model;
 use mozzi::model::description::JointKind;
@@ -12,31 +13,17 @@ const JUMP: (f64, f64) = (15.0, 0.05);
 
 /// Adds whole turns, so that revolute joints turn continuously; other jumps are faults.
 pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
-    let (N, nq) = (log.rows(), model.nq());
+    let nq = model.nq();
     let joints: Vec<_> = model.joints().collect();
-    for (q, _, name) in axes(model) {
-        let turns = joints.iter().find(|joint| joint.name == name).is_some_and(
+    let axes = axes(model);
+    let found = each(axes.len(), log.theta.len(), |k| {
+        let (q, _, name) = &axes[k];
+        let turns = joints.iter().find(|joint| joint.name == *name).is_some_and(
             |joint| matches!(&joint.kind, JointKind::Screw(axis) if !axis.is_prismatic() && axis.pitch() == 0.0),
         );
-        let rows: Vec<usize> = (0..N).filter(|&row| log.theta[row * nq + q].is_finite()).collect();
-        let steps: Vec<f64> =
-            rows.windows(2).map(|pair| log.theta[pair[1] * nq + q] - log.theta[pair[0] * nq + q]).collect();
-        let usual = quantile(steps.iter().map(|step| step.abs()).collect(), 0.95);
-        let time = quantile(rows.windows(2).map(|pair| log.t[pair[1]] - log.t[pair[0]]).collect(), 0.5);
-        let (mut offset, mut wraps, mut first, mut jump) = (0.0, 0, None, None);
-        let mut offsets = vec![0.0; rows.len()];
-        for (k, step) in steps.iter().enumerate() {
-            let back = step - TAU * (step / TAU).round();
-            let is_next = log.t[rows[k + 1]] - log.t[rows[k]] < 5.0 * time.max(f64::MIN_POSITIVE);
-            if turns && step.abs() > PI && back.abs() <= (FAST * usual).max(0.05) {
-                offset += back - step;
-                wraps += 1;
-                first.get_or_insert(rows[k + 1]);
-            } else if is_next && step.abs() > (JUMP.0 * usual).max(JUMP.1) && jump.is_none() {
-                jump = Some((rows[k + 1], *step));
-            }
-            offsets[k + 1] = offset;
-        }
+        Turns::of(log, *q, nq, turns)
+    });
+    for (Turns { rows, offsets, wraps, first, jump, usual }, (q, _, name)) in found.into_iter().zip(axes) {
         if let Some((row, step)) = jump {
             findings.push(Finding::fault(
                 "position_jump",
@@ -66,6 +53,46 @@ pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
                 target[row * nq + q] += core::f64::consts::TAU * turns.round();
             }
         }
+    }
+}
+
+/// The steps of one position.
+struct Turns {
+    /// Rows with a number, and what unwraps the position there.
+    rows: Vec<usize>,
+    offsets: Vec<f64>,
+    wraps: usize,
+    /// The row after the first wrap.
+    first: Option<usize>,
+    /// The row after the first jump, and its step.
+    jump: Option<(usize, f64)>,
+    /// 95 % of the steps are smaller.
+    usual: f64,
+}
+
+impl Turns {
+    fn of(log: &Log, q: usize, nq: usize, may_turn: bool) -> Self {
+        let rows: Vec<usize> = (0..log.rows()).filter(|&row| log.theta[row * nq + q].is_finite()).collect();
+        let steps: Vec<f64> =
+            rows.windows(2).map(|pair| log.theta[pair[1] * nq + q] - log.theta[pair[0] * nq + q]).collect();
+        let usual = quantile(steps.iter().map(|step| step.abs()).collect(), 0.95);
+        let time = quantile(rows.windows(2).map(|pair| log.t[pair[1]] - log.t[pair[0]]).collect(), 0.5);
+        let mut found = Turns { offsets: vec![0.0; rows.len()], rows, wraps: 0, first: None, jump: None, usual };
+        let mut offset = 0.0;
+        for (k, step) in steps.iter().enumerate() {
+            let (row, next) = (found.rows[k], found.rows[k + 1]);
+            let back = step - TAU * (step / TAU).round();
+            let is_next = log.t[next] - log.t[row] < 5.0 * time.max(f64::MIN_POSITIVE);
+            if may_turn && step.abs() > PI && back.abs() <= (FAST * usual).max(0.05) {
+                offset += back - step;
+                found.wraps += 1;
+                found.first.get_or_insert(next);
+            } else if is_next && step.abs() > (JUMP.0 * usual).max(JUMP.1) && found.jump.is_none() {
+                found.jump = Some((next, *step));
+            }
+            found.offsets[k + 1] = offset;
+        }
+        found
     }
 }
 

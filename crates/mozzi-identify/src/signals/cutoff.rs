@@ -4,6 +4,7 @@ use super::butterworth::LowPass;
 use super::spectrum::Spectrum;
 use super::{Filter, Part, Samples, resampled};
 use crate::Log;
+use crate::cores::each;
 use crate::log::Rows;
 use mozzi::Model;
 
@@ -39,15 +40,14 @@ pub(super) fn automatic(model: &Model, log: &Log, rows: &Rows, filter: &Filter) 
 fn band_of_velocities(model: &Model, log: &Log, rows: &Rows, run: &[usize]) -> f64 {
     let (rate, t) = (1.0 / rows.step, run.iter().map(|&row| log.t[row]).collect::<Vec<f64>>());
     let (table, width) = log.dtheta.as_ref().map_or((&log.theta, model.nq()), |dtheta| (dtheta, model.n()));
-    let mut power: Option<Spectrum> = None;
-    for k in 0..width {
+    let spectra = each(width, width * run.len(), |k| {
         let x: Vec<f64> = run.iter().map(|&row| table[row * width + k]).collect();
-        let of_one = Spectrum::new(&resampled(&t, &x, rows.step), rate);
-        match &mut power {
-            Some(all) => all.power.iter_mut().zip(&of_one.power).for_each(|(sum, x)| *sum += x),
-            None => power = Some(of_one),
-        }
-    }
+        Spectrum::new(&resampled(&t, &x, rows.step), rate)
+    });
+    let power = spectra.into_iter().reduce(|mut all, of_one| {
+        all.power.iter_mut().zip(&of_one.power).for_each(|(sum, x)| *sum += x);
+        all
+    });
     power.map_or(0.1 * rate, |power| power.band(BAND).max(power.step))
 }
 

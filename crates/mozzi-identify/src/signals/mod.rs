@@ -6,6 +6,7 @@ mod quaternions;
 pub mod smoothing_spline;
 pub mod spectrum;
 
+use crate::cores::each;
 use crate::judgement::velocities;
 use crate::log::Rows;
 use crate::mend::mend;
@@ -243,8 +244,7 @@ impl Part<'_> {
         let raw = |table: &[f64], width: usize, k: usize| -> Vec<f64> {
             resampled(&t, &self.run.iter().map(|&row| table[row * width + k]).collect::<Vec<_>>(), step)
         };
-        let columns =
-            |table: &[f64], width: usize| -> Vec<Vec<f64>> { (0..width).map(|k| raw(table, width, k)).collect() };
+        let columns = |table: &[f64], width: usize| each(width, width * t.len(), |k| raw(table, width, k));
         let times: Vec<f64> = (0..raw(&self.log.t, 1, 0).len()).map(|k| t[0] + k as f64 * step).collect();
         let N = times.len();
 
@@ -253,7 +253,7 @@ impl Part<'_> {
         // memory: raw positions are kept only if they are differentiated
         let is_spline = self.filter.acceleration == Acceleration::Spline;
         let positions = if is_spline || self.log.dtheta.is_none() { theta.clone() } else { Vec::new() };
-        theta.iter_mut().for_each(|x| self.smooth(&times, x));
+        theta = self.smoothed(&times, theta);
         normalize(self.model, &mut theta);
         let mut dtheta = match &self.log.dtheta {
             Some(table) => columns(table, n),
@@ -261,52 +261,53 @@ impl Part<'_> {
         };
         let shape = &self.filter.friction;
         let kept = || (trim..N.saturating_sub(trim)).step_by(self.stride);
-        // memory: each signal is stored as soon as it is filtered
-        let store = |to: &mut Vec<f64>, width: usize, signals: &mut dyn Iterator<Item = Vec<f64>>| {
-            let begin = to.len();
-            to.resize(begin + kept().len() * width, 0.0);
-            for (k, x) in signals.enumerate() {
-                to.iter_mut().skip(begin + k).step_by(width).zip(kept()).for_each(|(to, row)| *to = x[row]);
-            }
+        let thinned = |x: &Vec<f64>| -> Vec<f64> { kept().map(|row| x[row]).collect() };
+        // memory: of a filtered signal only what is kept is stored
+        let all =
+            |width: usize, signal: &(dyn Fn(usize) -> Vec<f64> + Sync)| each(width, width * N, |k| thinned(&signal(k)));
+        let store = |to: &mut Vec<f64>, signals: Vec<Vec<f64>>| {
+            to.extend((0..kept().len()).flat_map(|row| signals.iter().map(move |x| x[row])));
         };
         let smooth = |mut x: Vec<f64>| {
             self.smooth(&times, &mut x);
             x
         };
-        let shaped = |to: &mut Option<Vec<f64>>, of: &dyn Fn(f64) -> f64| {
+        let shaped = |to: &mut Option<Vec<f64>>, of: &(dyn Fn(f64) -> f64 + Sync)| {
             if let Some(to) = to {
-                store(to, n, &mut dtheta.iter().map(|x| smooth(x.iter().map(|x| of(*x)).collect())));
+                store(to, all(n, &|k| smooth(dtheta[k].iter().map(|x| of(*x)).collect())));
             }
         };
         shaped(&mut samples.coulomb, &|x| shape.coulomb(x));
         shaped(&mut samples.stribeck, &|x| shape.stribeck(x));
         if self.log.dtheta.is_some() {
-            dtheta.iter_mut().for_each(|x| self.smooth(&times, x));
+            dtheta = self.smoothed(&times, dtheta);
         }
-        store(&mut samples.theta, nq, &mut theta.into_iter());
+        store(&mut samples.theta, theta.iter().map(thinned).collect());
+        drop(theta);
         let given = self.log.ddtheta.as_ref();
-        match (given, self.filter.acceleration, self.cutoff) {
-            (Some(table), ..) => store(&mut samples.ddtheta, n, &mut (0..n).map(|k| smooth(raw(table, n, k)))),
+        let ddtheta = match (given, self.filter.acceleration, self.cutoff) {
+            (Some(table), ..) => all(n, &|k| smooth(raw(table, n, k))),
             (None, Acceleration::Spline, Some(cutoff)) => {
-                let found = self.by_spline(&times, &dtheta, &positions, cutoff);
-                store(&mut samples.ddtheta, n, &mut found.into_iter());
+                self.by_spline(&times, &dtheta, &positions, cutoff).iter().map(thinned).collect()
             }
-            _ => store(&mut samples.ddtheta, n, &mut dtheta.iter().map(|x| derivative(x, step))),
-        }
-        store(&mut samples.dtheta, n, &mut dtheta.into_iter());
-        let removed = &mut samples.removed;
-        let mut forces = (0..n).map(|k| {
+            _ => all(n, &|k| derivative(&dtheta[k], step)),
+        };
+        store(&mut samples.ddtheta, ddtheta);
+        store(&mut samples.dtheta, dtheta.iter().map(thinned).collect());
+        drop(dtheta);
+        let forces = each(n, n * N, |k| {
             let rough = raw(&self.log.tau, n, k);
             let x = smooth(rough.clone());
-            removed[k] += kept().map(|k| (rough[k] - x[k]).powi(2)).sum::<f64>();
-            x
+            (thinned(&x), kept().map(|k| (rough[k] - x[k]).powi(2)).sum::<f64>())
         });
-        store(&mut samples.tau, n, &mut forces);
+        let (forces, removed): (Vec<Vec<f64>>, Vec<f64>) = forces.into_iter().unzip();
+        samples.removed.iter_mut().zip(removed).for_each(|(sum, power)| *sum += power);
+        store(&mut samples.tau, forces);
         if let (Some(to), Some(table)) = (&mut samples.target, &self.log.target) {
-            store(to, n, &mut (0..n).map(|k| smooth(raw(table, n, k))));
+            store(to, all(n, &|k| smooth(raw(table, n, k))));
         }
         for ((_, to), (_, table)) in samples.wrenches.iter_mut().zip(&self.log.wrenches) {
-            store(to, 6, &mut (0..6).map(|k| smooth(raw(table, 6, k))));
+            store(to, all(6, &|k| smooth(raw(table, 6, k))));
         }
         for k in kept() {
             samples.t.push(times[k]);
@@ -320,6 +321,15 @@ impl Part<'_> {
         let k = t.partition_point(|&t| t < at).min(t.len() - 1);
         let k = if k > 0 && at - t[k - 1] < t[k] - at { k - 1 } else { k };
         self.run[k]
+    }
+
+    /// Filters signals.
+    fn smoothed(&self, times: &[f64], signals: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        each(signals.len(), signals.len() * times.len(), |k| {
+            let mut x = signals[k].clone();
+            self.smooth(times, &mut x);
+            x
+        })
     }
 
     /// Filters one signal in place.

@@ -4,6 +4,7 @@ use crate::figure::{Curve, Figure, Panel, Stroke};
 use mozzi::model::{Freedom, Place};
 use mozzi::nalgebra::{DMatrix, Matrix2, SymmetricEigen, U2, Vector2};
 use mozzi::{Error, FrameId, Model, Vec3};
+use mozzi_urdf::counted;
 
 /// The drawn length of a velocity of 1 m/s, in m.
 const METRES: f64 = 0.25;
@@ -82,7 +83,12 @@ pub fn ellipsoids(model: &Model, configurations: &[Vec<f64>], frame: FrameId, pl
     }
     let [x, y] = plane.axes().map(|axis| format!("{} [m]", ["x", "y", "z"][axis]));
     let panel = Panel { x_label: x, y_label: y, equal: true, curves, ..Panel::default() };
-    let title = format!("{}, at {}", model.description().name, model.frame_name(frame));
+    let singular = ellipses.iter().filter(|(_, gram)| !regular(gram)).count();
+    let without = match singular {
+        0 => String::new(),
+        _ => format!("; {} without an ellipsoid of forces", counted(singular, "singular position")),
+    };
+    let title = format!("{}, at {}{without}", model.description().name, model.frame_name(frame));
     Ok(Figure { title, panels: vec![panel], columns: 1 })
 }
 
@@ -128,6 +134,7 @@ mod tests {
         let panel = &figure.panels[0];
         // links, two ellipses; stretched out: links, one ellipse
         assert_eq!(panel.curves.len(), 5);
+        assert!(figure.title.ends_with("; 1 singular position without an ellipsoid of forces"), "{}", figure.title);
         let pose = model.forward_kinematics(&theta, tip).expect("a pose");
         let J = model.body_jacobian(&theta, tip).expect("J").0.into_iter().map(|column| pose.R * column.v);
         let J: Vec<Vec3> = J.collect();

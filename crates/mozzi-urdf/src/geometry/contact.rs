@@ -3,9 +3,10 @@
 use super::vertices::mesh_corners;
 use super::{Form, Shape, locate};
 use crate::files;
+use mozzi::model::description::{Joint, JointKind};
 use mozzi::model::{ContactPoint, Support};
 use mozzi::{Model, Vec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// More contact points are left out: each costs time at every step.
@@ -67,6 +68,26 @@ pub fn contact_points(
         ));
     }
     found
+}
+
+/// The origins of the last links, for robots whose shapes cannot touch: of those behind a joint that is not fixed, if
+/// there are any.
+pub fn end_points(model: &Model, mu: f64, restitution: f64) -> Vec<ContactPoint> {
+    let joints = &model.description().joints;
+    let before: BTreeMap<&str, &Joint> = joints.iter().map(|joint| (joint.child.as_str(), joint)).collect();
+    let parents: BTreeSet<&str> = joints.iter().map(|joint| joint.parent.as_str()).collect();
+    let is_behind_joint = |link: &str| {
+        let chain = std::iter::successors(before.get(link), |joint| before.get(joint.parent.as_str()));
+        chain.take(joints.len()).any(|joint| joint.kind != JointKind::Fixed)
+    };
+    let links = model.description().links.iter().map(|link| link.name.as_str());
+    let ends: Vec<&str> = links.filter(|name| !parents.contains(name)).collect();
+    let moving: Vec<&str> = ends.iter().copied().filter(|link| is_behind_joint(link)).collect();
+    let point = |name: &str| {
+        let frame = model.frame(name).ok()?;
+        Some(ContactPoint { restitution, ..ContactPoint::new(name, frame, Vec3::zero(), mu) })
+    };
+    if moving.is_empty() { ends } else { moving }.into_iter().filter_map(point).collect()
 }
 
 /// The extreme vertices of each file: several shapes may show it.

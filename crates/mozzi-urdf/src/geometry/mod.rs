@@ -13,7 +13,7 @@ mod shape;
 pub(crate) mod surface;
 mod vertices;
 
-pub use contact::{FRICTION, ShapeContacts, contact_points};
+pub use contact::{FRICTION, ShapeContacts, contact_points, end_points};
 pub(crate) use files::Own;
 pub use files::{NotLocated, locate};
 pub use filled::filled_mesh;

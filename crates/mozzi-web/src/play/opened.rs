@@ -3,9 +3,8 @@
 use super::files::settings;
 use super::shapes::drawn;
 use crate::robot::Robot;
-use mozzi::{Description, Model, Vec3};
-use mozzi_sim::ContactPoint;
-use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, parse_with as geometry};
+use mozzi::{Description, Model};
+use mozzi_urdf::geometry::{FRICTION, Geometry, contact_points, end_points, parse_with as geometry};
 use mozzi_urdf::{Diagnostic, Style, json};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -52,7 +51,7 @@ pub fn open(text: &str) -> Result<(Robot, Value), String> {
         if is_json { Geometry::default() } else { geometry(name, source, &settings.xacro) };
     let touching = contact_points(&model, &shapes, Path::new(name), None, COEFFICIENTS);
     let mut notes: Vec<String> = left_out.iter().map(ToString::to_string).collect();
-    let points = if touching.points.is_empty() { ends(&model) } else { touching.points };
+    let points = if touching.points.is_empty() { end_points(&model, FRICTION, 0.0) } else { touching.points };
     notes.extend(touching.left_out);
     let said = json!({
         "description": json::to_value(model.description()),
@@ -62,15 +61,6 @@ pub fn open(text: &str) -> Result<(Robot, Value), String> {
     let mut robot = Robot::new(model);
     robot.settings.points = points;
     Ok((robot, said))
-}
-
-/// The origins of the last links, for robots whose shapes cannot touch.
-fn ends(model: &Model) -> Vec<ContactPoint> {
-    let robot = model.description();
-    let is_end = |name: &str| !robot.joints.iter().any(|joint| joint.parent == name);
-    let ends = robot.links.iter().filter(|link| is_end(&link.name));
-    let point = |name: &str| Some(ContactPoint::new(name, model.frame(name).ok()?, Vec3::zero(), FRICTION));
-    ends.filter_map(|link| point(&link.name)).collect()
 }
 
 fn from_json(file_name: &str, text: &str) -> Result<Description, String> {

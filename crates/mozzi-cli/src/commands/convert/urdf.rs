@@ -114,7 +114,8 @@ fn relative_meshes(input: &str, output: &str, text: &str) {
         std::fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
     };
     let is_relative = |name: &&str| !name.contains("://") && !Path::new(name).is_absolute();
-    let mut files = text.split("filename=").skip(1).filter_map(|rest| rest.get(1..)?.split(['"', '\'']).next());
+    let meshes = text.split("<mesh").skip(1).filter_map(|rest| rest.split_once("filename="));
+    let mut files = meshes.filter_map(|(_, rest)| rest.get(1..)?.split(['"', '\'']).next());
     if let Some(file) = files.find(is_relative).filter(|_| folder(input) != folder(output)) {
         failure::note(&format!(
             "{output} is in another folder than {input}; its paths of meshes, such as `{file}`, are unchanged"

@@ -178,8 +178,9 @@ impl<'m> Terms<'m> {
                 ));
             }
             Err(mozzi::Error::SingularTask { .. }) if self.model.n() < 6 && !is_named => failure::note(&format!(
-                "Λ and η are omitted: {} velocities are no motion in all six directions; choose some, such as --task vx,vz",
-                self.model.n()
+                "Λ and η are omitted: with {} of freedom the end effector cannot move in all six directions; choose \
+                 some, such as --task vx,vz",
+                mozzi_urdf::counted(self.model.n(), "degree")
             )),
             Err(error) if is_named && !is_singular(&error) => return Err(error.into()),
             Err(error) => failure::note(&format!("Λ and η are omitted: {error}")),

@@ -2,7 +2,7 @@
 
 use super::{Plan, equality, is_full, keyframe, travel};
 use crate::written::names_of;
-use mozzi::model::description::{FreeJoint, JointKind, Link};
+use mozzi::model::description::{FreeJoint, JointKind, Limits, Link};
 use mozzi::{Base, Description, SpatialInertia};
 
 pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
@@ -17,13 +17,15 @@ pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
         .map(|joint| joint.child.as_str())
         .collect();
     losses.extend(names_of("links without mass between joints", &merged));
-    for joint in d.joints.iter().filter(|joint| joint.kind != JointKind::Fixed) {
+    let moving = || d.joints.iter().filter(|joint| joint.kind != JointKind::Fixed);
+    let limits_of = |what, is_limited: &dyn Fn(&Limits) -> bool| {
+        let limited = moving().filter(|joint| is_limited(&joint.limits)).map(|joint| joint.name.as_str());
+        names_of(what, &limited.collect::<Vec<_>>())
+    };
+    losses.extend(limits_of("the velocity limits of", &|limits| limits.velocity.is_some()));
+    losses.extend(limits_of("the acceleration limits of", &|limits| limits.acceleration.is_some()));
+    for joint in moving() {
         let (name, limits) = (&joint.name, joint.limits);
-        for (what, limit) in [("velocity", limits.velocity), ("acceleration", limits.acceleration)] {
-            if let Some(limit) = limit {
-                losses.push(format!("joint `{name}`: {what} limit {limit:?}"));
-            }
-        }
         if limits.effort == Some(0.0) {
             losses.push(format!("joint `{name}`: effort limit 0, which MuJoCo has not"));
         }
