@@ -1,6 +1,7 @@
 //! Comparison with other libraries on the same robot: `mozzi.compare`.
 
 use crate::failure::{of_loader, of_model};
+use crate::interrupt::waited;
 use crate::load;
 use crate::model::PyModel;
 use mozzi_report::compare::{Comparison, Error, Options, Source, ask, compare};
@@ -30,9 +31,10 @@ pub fn _compare(
     let options = Options { python, states, seed, time_limit: mozzi_report::compare::TIME_LIMIT };
     let report = |c: &Comparison| (c.text(), c.json().to_string(), c.agrees(), c.is_explained());
     if let Ok(model) = robot.cast::<PyModel>() {
-        let model = &model.get().robot().model;
-        let source = Source::written(&model.description().name, model.description()).map_err(of_comparison)?;
-        return py.detach(|| compare(model, source, &options)).map(|c| report(&c)).map_err(of_comparison);
+        let (description, robot) = (model.get().robot().model.description(), model.clone().unbind());
+        let source = Source::written(&description.name, description).map_err(of_comparison)?;
+        let found = waited(py, move || compare(&robot.get().robot().model, source, &options))?;
+        return found.map(|c| report(&c)).map_err(of_comparison);
     }
     let name: PathBuf = robot.extract()?;
     let name = name.to_string_lossy();
@@ -40,12 +42,13 @@ pub fn _compare(
         Ok(loaded) => {
             let model = load::build(py, Ok(loaded), false)?;
             let source = Source::read(&name, model.description()).map_err(of_comparison)?;
-            py.detach(|| compare(&model, source, &options)).map(|c| report(&c)).map_err(of_comparison)
+            let found = waited(py, move || compare(&model, source, &options))?;
+            found.map(|c| report(&c)).map_err(of_comparison)
         }
         // the file exists but is invalid: report whether the other libraries load it
         Err(refusal @ LoadError::Refused { .. }) => {
             let source = Source::read(&name, &mozzi::Description::new("refused")).map_err(of_comparison)?;
-            let found = py.detach(|| ask(source, &options)).map_err(of_comparison)?;
+            let found = waited(py, move || ask(source, &options))?.map_err(of_comparison)?;
             let (text, json, agrees, explained) = report(&found);
             Ok((format!("{refusal}\n{text}"), json, agrees, explained))
         }

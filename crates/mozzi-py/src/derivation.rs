@@ -1,8 +1,10 @@
 //! Equations in symbols: `model.derive`.
 
 use crate::failure::of_model;
+use crate::interrupt::waited;
 use crate::methods::quantity as task;
 use crate::model::PyModel;
+use mozzi::quantities::Query;
 use mozzi_symbolic::{Collect, Derivation, Equal, Error, Language, Options, Symbols, base_parameters, derive};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -91,8 +93,7 @@ impl PyModel {
     ))]
     #[allow(clippy::too_many_arguments)] // Python's keywords
     fn derive(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         quantity: &str,
         frame: Option<&str>,
         symbols: Option<&str>,
@@ -103,19 +104,14 @@ impl PyModel {
         coordinates: &str,
         urdf: Option<String>,
     ) -> PyResult<PyDerivation> {
-        let model = &self.robot().model;
         let rows = rows.map(task::rows).transpose()?;
         let mut query = None;
         if quantity.replace('-', "_") != "base_parameters" {
-            let mut found = self.query(quantity, frame)?;
+            let mut found = slf.get().query(quantity, frame)?;
             found.subject.coordinates = task::coordinates(Some(coordinates))?;
-            found.subject.rows = rows.as_deref().unwrap_or(found.subject.rows);
             query = Some(found);
         }
-        let derive = |text: Option<&str>, options: &Options| match query {
-            Some(query) => derive(model, text, query, options),
-            None => base_parameters(model, text, options),
-        };
+        let model = &slf.get().robot().model;
         let default = if model.moving_links() <= 3 { Symbols::ALL } else { Symbols::NONE };
         let equals = [("none", Equal::Separate), ("link", Equal::OfLink), ("robot", Equal::OfRobot)];
         let collects = [("shortest", Collect::Shortest), ("velocities", Collect::Velocities)];
@@ -126,15 +122,26 @@ impl PyModel {
             names: cse,
         };
         let own = mozzi_urdf::embedded::text(&model.description().name).map(str::to_string);
-        let found = py.detach(|| match (&urdf, &own) {
-            (Some(text), _) => derive(Some(text), &options),
-            // a changed robot is not the file's any more
-            (None, Some(text)) => match derive(Some(text), &options) {
-                Err(Error::NotRead(_)) => derive(None, &options),
-                found => found,
-            },
-            (None, None) => derive(None, &options),
-        });
+        let robot = slf.clone().unbind();
+        let found = waited(slf.py(), move || {
+            let mut query: Option<Query<'_>> = query;
+            if let (Some(query), Some(rows)) = (&mut query, &rows) {
+                query.subject.rows = rows;
+            }
+            let derive = |text: Option<&str>| match query {
+                Some(query) => derive(&robot.get().robot().model, text, query, &options),
+                None => base_parameters(&robot.get().robot().model, text, &options),
+            };
+            match (&urdf, &own) {
+                (Some(text), _) => derive(Some(text)),
+                // a changed robot is not the file's any more
+                (None, Some(text)) => match derive(Some(text)) {
+                    Err(Error::NotRead(_)) => derive(None),
+                    found => found,
+                },
+                (None, None) => derive(None),
+            }
+        })?;
         found.map(PyDerivation).map_err(|error| match error {
             Error::Model(error) => of_model(error),
             Error::NotProven { .. } => PyRuntimeError::new_err(error.to_string()),

@@ -2,6 +2,7 @@
 
 use crate::array::list;
 use crate::failure::of_model;
+use crate::interrupt::Interrupt;
 use crate::model::{PyModel, array};
 use crate::motion::limits::one_or_each;
 use mozzi::Model;
@@ -143,17 +144,21 @@ pub fn _identify<'py>(
     let spline: bool = option(options, "spline")?.unwrap_or(false);
     let acceleration = if spline { Acceleration::Spline } else { Acceleration::Differences };
     let total_mass: Option<(f64, f64)> = option(options, "total_mass")?;
-    let tenths: f64 = 10.0 * option(options, "fit")?.unwrap_or(1.0);
+    let fit: f64 = option(options, "fit")?.unwrap_or(1.0);
+    if !(fit > 0.0 && fit <= 1.0) {
+        return Err(PyValueError::new_err(format!("fit is {fit}, expected a part of the log, above 0 and at most 1")));
+    }
     let settings = Options {
         choice: choice(&robot, options)?,
         filter: Filter { cutoff, acceleration, ..Filter::default() },
         prior: option(options, "prior")?.unwrap_or(0.3),
         robust: option(options, "robust")?.unwrap_or(false),
         limits: Limits { total_mass: total_mass.map(|(m, d)| [m, d]), ..Limits::default() },
-        tenths: tenths.round() as usize,
+        tenths: (10.0 * fit).round() as usize,
         trust_log: option(options, "trust_log")?.unwrap_or(false),
     };
-    let stop = || Python::attach(|py| py.check_signals().is_err());
+    let interrupt = Interrupt::new();
+    let stop = || interrupt.stop();
     let work = || -> Result<_, Error> {
         let found = identify(&robot, &logs, &settings, &stop)?;
         let mut judged = judge(&found, &logs)?;
@@ -178,7 +183,9 @@ pub fn _identify<'py>(
         }
         Ok((json, html, description, series))
     };
-    let (json, html, description, series) = py.detach(work).map_err(of_identification)?;
+    let found = py.detach(work);
+    interrupt.check()?;
+    let (json, html, description, series) = found.map_err(of_identification)?;
     let n = robot.n();
     let mut tables = Vec::new();
     for (t, measured, predicted) in series {
@@ -203,8 +210,9 @@ pub fn _excite<'py>(
 ) -> PyResult<([Bound<'py, PyAny>; 4], f64, f64, Vec<(String, f64, f64)>)> {
     let robot = &model.get().robot().model;
     let mut settings = ExciteOptions::new(robot, duration);
-    if !(step > 0.0 && duration / step < 1e7) {
-        return Err(PyValueError::new_err(format!("step is {step}, expected a positive number of seconds")));
+    if !(step > 0.0 && step <= duration && duration / step < 1e7) {
+        let expected = "a number of seconds from a ten-millionth of the duration to the duration";
+        return Err(PyValueError::new_err(format!("step is {step} and duration {duration}, expected {expected}")));
     }
     let n = robot.n();
     let limits = &mut settings.limits;
@@ -221,8 +229,11 @@ pub fn _excite<'py>(
     settings.harmonics = option(options, "harmonics")?.unwrap_or(settings.harmonics);
     settings.rate = option(options, "rate")?.unwrap_or(settings.rate);
     settings.choice = choice(robot, options)?;
-    let stop = || Python::attach(|py| py.check_signals().is_err());
-    let found = py.detach(|| excite(robot, &settings, &stop)).map_err(of_identification)?;
+    let interrupt = Interrupt::new();
+    let stop = || interrupt.stop();
+    let found = py.detach(|| excite(robot, &settings, &stop));
+    interrupt.check()?;
+    let found = found.map_err(of_identification)?;
     let count = (duration / step).round() as usize;
     let mut tables: [Vec<f64>; 4] = Default::default();
     for k in 0..=count {

@@ -13,6 +13,7 @@ mod failure;
 mod gpu;
 mod html;
 mod identify;
+mod interrupt;
 mod jax;
 mod load;
 mod methods;

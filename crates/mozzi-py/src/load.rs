@@ -74,7 +74,17 @@ pub fn any(given: &Bound<'_, PyAny>, how: &str, floating: bool, xacro: &Xacro) -
     let Ok(path) = given.extract::<PathBuf>() else { return file(given, how, floating, xacro) };
     let py = given.py();
     if let Some(name) = path.to_str().filter(|name| mozzi_urdf::embedded::unless_file(name).is_some()) {
+        policy(how)?;
+        if xacro.values.as_ref().is_some_and(|values| !values.is_empty()) {
+            return Err(PyValueError::new_err(format!(
+                "xacro_args is given, expected none: '{name}' is an embedded URDF"
+            )));
+        }
         return embedded(py, name, floating);
+    }
+    // a name without a folder and an ending that is no file
+    if path.extension().is_none() && path.components().count() == 1 && !path.exists() {
+        return Err(of_loader(py, LoadError::NoSuchRobot { name: path.display().to_string() }));
     }
     if path.extension().is_none_or(|ending| ending != "json") {
         return file(given, how, floating, xacro);

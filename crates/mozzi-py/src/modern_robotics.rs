@@ -2,7 +2,7 @@
 //! package does.
 
 use crate::array::{Numbers, wrong_shape};
-use crate::describe::refused;
+use crate::describe::{pose, refused, rotation};
 use crate::failure::{of_model, of_motion};
 use crate::model::{PyModel, array};
 use crate::motion::Instants;
@@ -18,26 +18,6 @@ use pyo3::types::{PyList, PyTuple};
 
 type Given<'a, 'py> = &'a Bound<'py, PyAny>;
 type Found<'py> = PyResult<Bound<'py, PyAny>>;
-
-/// Tolerance for matrices with truncated digits: `TestIfSO3` of the package.
-const ROUNDED: f64 = 1e-3;
-
-/// A rotation; a matrix with rounding errors is replaced by the nearest one.
-fn rotation(R: [[f64; 3]; 3]) -> PyResult<SO3> {
-    let R = Mat3::from_rows(R);
-    SO3::from_matrix(R).or_else(|error| match SO3::nearest(R) {
-        Ok((nearest, distance)) if distance < ROUNDED => Ok(nearest),
-        _ => Err(refused(error)),
-    })
-}
-
-fn pose(T: [[f64; 4]; 4]) -> PyResult<SE3> {
-    if T[3] != [0.0, 0.0, 0.0, 1.0] {
-        return Err(PyValueError::new_err(format!("the last row is {:?}, expected [0, 0, 0, 1]", T[3])));
-    }
-    let row = |i: usize| [T[i][0], T[i][1], T[i][2]];
-    Ok(SE3::new(rotation([row(0), row(1), row(2)])?, Vec3([T[0][3], T[1][3], T[2][3]])))
-}
 
 /// log T. At half a turn, which has two solutions, the package's: the last component of ω that is not 0 is positive.
 fn logarithm(T: SE3) -> Twist {
@@ -65,7 +45,7 @@ fn exp3<'py>(py: Python<'py>, so3mat: Given<'_, 'py>) -> Found<'py> {
 
 #[pyfunction]
 fn log3<'py>(py: Python<'py>, R: Given<'_, 'py>) -> Found<'py> {
-    let R = rotation(Numbers::matrix("R", R, "(3, 3)")?)?;
+    let R = rotation(Mat3::from_rows(Numbers::matrix("R", R, "(3, 3)")?)).map_err(refused)?;
     let [x, y, z, _] = hat(logarithm(SE3::new(R, Vec3::zero())));
     matrix(py, [x, y, z].map(|[a, b, c, _]| [a, b, c]))
 }

@@ -196,7 +196,7 @@ def test_arguments_of_python(ur5):
     with refused(TypeError, "frame is a int, expected a str"):
         ur5.body_jacobian(ZERO, 1)
     for rows, kind in [(3, "int"), ("ab", "str"), ([-1], "list"), ([1.5], "list")]:
-        with refused(TypeError, f"rows is a {kind}, expected a sequence of row numbers from 0 to 5"):
+        with refused(TypeError, f"rows is {rows} ({kind}), expected a sequence of row numbers from 0 to 5"):
             ur5.task_space_dynamics(ZERO, ZERO, rows=rows)
     with pytest.raises(ValueError, match=r"rows is \[1, 1\], expected distinct row numbers from 0 to 5"):
         ur5.task_space_dynamics(ZERO, ZERO, rows=[1, 1])
@@ -206,3 +206,18 @@ def test_arguments_of_python(ur5):
         mozzi.Model()
     with pytest.raises(AttributeError):
         ur5.n = 3
+
+
+def test_loading_by_name(ur5):
+    for call, words in [
+        (lambda: mozzi.Model.load("UR5"), "`UR5` is neither a file nor one of the embedded robots .* did you mean `ur5`"),
+        (lambda: mozzi.Model.load("ur5", policy="strickt"), "policy is 'strickt', expected 'default', 'strict'"),
+        (lambda: mozzi.Model.load("ur5", xacro_args={"a": 1}), "xacro_args is given, expected none"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            call()
+    with pytest.raises(FileNotFoundError):
+        mozzi.Model.load("nowhere.urdf")
+    for name in ["gravity", "position_limits", "velocity_limits", "effort_limits"]:
+        with pytest.raises(ValueError, match="read-only"):  # a copy: the change would be lost
+            getattr(ur5, name)[0] = 0

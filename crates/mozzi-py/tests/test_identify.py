@@ -151,3 +151,19 @@ def test_position_controllers():
         np.testing.assert_allclose(law["delay"], delay, rtol=0.05)
     assert len(found.servos) == 2
     assert mozzi.identify(robot, log).servos == {}
+
+
+def test_wrong_options_are_named(ur5):
+    log = {"t": np.arange(50.0), "theta": np.zeros((50, 6)), "tau": np.zeros((50, 6))}
+    for wrong, words in [
+        ({"acceleration": "Spline"}, "acceleration is 'Spline', expected 'differences' or 'spline'"),
+        ({"total_mass": 20}, "total_mass is 20, expected a mass and its standard deviation"),
+        ({"fit": 2.0}, "fit is 2, expected a part of the log"),
+    ]:
+        with pytest.raises((TypeError, ValueError), match=words):
+            mozzi.identify(ur5, log, **wrong)
+    for logs, words in [("log.csv", "logs is 'log.csv', expected a mapping"), (None, "logs is None, expected a mapping")]:
+        with pytest.raises(TypeError, match=words):
+            mozzi.identify(ur5, logs)
+    with pytest.raises(ValueError, match="step is 5 and duration 2, expected a number of seconds from"):
+        mozzi.excite(ur5, 2.0, step=5)

@@ -20,6 +20,17 @@ def error(robot, theta, goal, frame=None):
     return np.arctan2(sine, 0.5 * (np.trace(T[:3, :3]) - 1)), np.linalg.norm(T[:3, 3])
 
 
+def test_rounded_poses_are_reached_and_wrong_ones_refused(ur5):
+    solver, goal = mozzi.InverseKinematics(ur5), ur5.forward_kinematics(HOME)
+    for rounded in [goal.astype(np.float32), np.round(goal, 4)]:
+        np.testing.assert_allclose(solver.solve(HOME + 0.1, pose=rounded).theta, HOME, atol=1e-3)
+        assert solver.solve(HOME + 0.1, orientation=rounded[:3, :3]).reached
+        tcp = ur5.with_frame("tcp", "tool0", rounded)
+        np.testing.assert_allclose(tcp.forward_kinematics(HOME, "tcp"), goal @ goal, atol=1e-3)
+    with pytest.raises(ValueError, match=r"pose\[1\]: not a rotation matrix: .* \(expected at most 1e-3\)"):
+        solver.solve([HOME, HOME], pose=[goal, goal @ np.diag([1, 1.01, 1, 1])])
+
+
 @pytest.mark.parametrize("method", ["levenberg-marquardt", "newton"])
 def test_a_pose_is_reached(ur5, random, method):
     solver = mozzi.InverseKinematics(ur5, method=method, angle_tolerance=1e-9, distance_tolerance=1e-9)

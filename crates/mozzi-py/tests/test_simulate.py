@@ -241,3 +241,27 @@ def test_what_takes_one_start(ur5):
         ur5.simulate(one, one, 1, 10, method="rk4", tolerance=1e-3)
     with refused(ValueError, "tolerance is 0, expected a positive, finite number"):
         ur5.simulate(one, one, 1, 10, method="dopri", tolerance=0)
+
+
+def test_a_bool_counts_where_it_becomes_true():
+    pendulum = mozzi.models.double_pendulum()
+
+    def run(until):
+        return pendulum.simulate([-0.5, 0.0], None, 2.0, 2000, until=until)
+
+    zero = run(lambda t, theta, dtheta: theta[0] - 0.1)
+    for condition in [lambda t, theta, dtheta: theta[0] > 0.1, lambda t, theta, dtheta: bool(theta[0] > 0.1)]:
+        np.testing.assert_allclose(run(condition).t[-1], zero.t[-1], rtol=1e-9)
+    assert run(lambda t, theta, dtheta: t >= 0.5).t[-1] == pytest.approx(0.5)
+    with pytest.raises(ValueError, match="the function of until is True at the start, expected False"):
+        run(lambda t, theta, dtheta: theta[0] < 0.1)
+    with pytest.raises(TypeError, match="the function of until answered None, expected a number or a bool"):
+        run(lambda t, theta, dtheta: None)
+
+
+def test_torques_of_each_step_are_a_rollouts(ur5):
+    with pytest.raises(ValueError, match=r"torque has shape \(50, 6\), expected \(6,\), constant, .* `rollout`"):
+        ur5.simulate(np.zeros(6), None, 0.1, 50, torque=np.ones((50, 6)))
+    assert ur5.simulate(np.zeros((50, 6)), None, 0.1, 50, torque=np.ones((50, 6))).theta.shape == (50, 51, 6)
+    with pytest.raises(MemoryError):
+        ur5.simulate(np.zeros((3, 6)), None, 1.0, 10**12)

@@ -1,6 +1,7 @@
 //! Paths without timing: θ(s) for s from 0 to 1.
 
 use crate::Error;
+use crate::error::check;
 use mozzi::Model;
 use mozzi::model::{difference, integrate};
 
@@ -58,8 +59,10 @@ impl<'m> Line<'m> {
     /// # Errors
     /// [`mozzi::Error::WrongLength`], [`mozzi::Error::BadArgument`].
     pub fn new(model: &'m Model, from: &[f64], to: &[f64]) -> Result<Self, Error> {
-        model.check_configuration(from)?;
-        model.check_configuration(to)?;
+        for (what, theta) in [("the start of a line", from), ("the end of a line", to)] {
+            model.check_configuration(theta)?;
+            check(theta.iter().all(|x| x.is_finite()), what, format!("{theta:?}"), "finite numbers")?;
+        }
         let mut way = vec![0.0; model.n()];
         difference(model, from, to, &mut way);
         Ok(Line { model, from: from.to_vec(), way })

@@ -4,6 +4,7 @@ use super::demands::{Demand, demands_of_a_motion};
 use super::limits::Limits;
 use super::path::Path;
 use super::profile::{Profile, Progress};
+use super::time_optimal::MOST;
 use crate::Error;
 use crate::error::{check, check_driven, check_open};
 use mozzi::Model;
@@ -28,7 +29,7 @@ pub fn stretched(
     samples: usize,
 ) -> Result<Profile, Error> {
     limits.check(model)?;
-    check(samples >= 2, "the number of samples", samples, "at least 2")?;
+    check((2..=MOST).contains(&samples), "the number of samples", samples, "2 to 10,000,000")?;
     check_driven(model, "a robot on a timed path")?;
     check_open(model, "a robot on a timed path")?;
     let places = places(profile, &path.knots(), samples);

@@ -237,6 +237,10 @@ def identify(
     ValueError
         A log is too short, contradicts itself or the robot, or does not excite the robot, or an option is wrong.
     """
+    if acceleration not in ("differences", "spline"):
+        raise ValueError(f"acceleration is {acceleration!r}, expected 'differences' or 'spline'")
+    if total_mass is not None and not (isinstance(total_mass, Sequence) and len(total_mass) == 2):
+        raise TypeError(f"total_mass is {total_mass!r}, expected a mass and its standard deviation, kg, or None")
     options = {
         "torque": torque,
         "only": only,
@@ -259,7 +263,17 @@ def identify(
 
 
 def _listed(logs: _Logs) -> list[Mapping[str, Any]]:
-    return [logs] if isinstance(logs, Mapping) else list(logs)
+    if isinstance(logs, (str, bytes, os.PathLike)):
+        raise TypeError(f"logs is {logs!r}, expected a mapping with t, theta and tau; `mozzi identify` reads files")
+    if isinstance(logs, Mapping):
+        return [logs]
+    table: Any = logs
+    if hasattr(table, "columns") and hasattr(table, "to_dict"):  # pandas: a column holds numbers or lists of them
+        return [{str(name): table[name].tolist() for name in table.columns}]
+    try:
+        return list(logs)
+    except TypeError:
+        raise TypeError(f"logs is {logs!r}, expected a mapping with t, theta and tau, or a sequence of them") from None
 
 
 class Excitation(NamedTuple):

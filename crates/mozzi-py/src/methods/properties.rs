@@ -6,6 +6,12 @@ use crate::results::named;
 use mozzi::Freedom;
 use pyo3::prelude::*;
 
+/// A copy of the robot's numbers: a change of it would be lost.
+fn read_only(array: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyAny>> {
+    array.call_method1("setflags", (false,))?;
+    Ok(array)
+}
+
 #[pymethods]
 impl PyModel {
     /// The robot's name.
@@ -91,7 +97,7 @@ impl PyModel {
     /// Gravity in {s}, shape (3,), m/s².
     #[getter]
     fn gravity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, &[3], self.robot().model.gravity().0)
+        read_only(array(py, &[3], self.robot().model.gravity().0)?)
     }
 
     /// Lowest and highest position of each joint, shape (joints, 2), rad or m; infinite without a limit.
@@ -99,21 +105,21 @@ impl PyModel {
     fn position_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let none = [f64::NEG_INFINITY, f64::INFINITY];
         let limits = self.robot().model.joints().flat_map(|joint| joint.limits.position.unwrap_or(none));
-        array(py, &[self.robot().model.joint_names().len(), 2], limits)
+        read_only(array(py, &[self.robot().model.joint_names().len(), 2], limits)?)
     }
 
     /// Maximum speed of each joint, shape (joints,), rad/s or m/s; infinite without a limit.
     #[getter]
     fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits = self.robot().model.joints().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY));
-        array(py, &[self.robot().model.joint_names().len()], limits)
+        read_only(array(py, &[self.robot().model.joint_names().len()], limits)?)
     }
 
     /// Maximum torque or force of each joint, shape (joints,), N m or N; infinite without a limit.
     #[getter]
     fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits = self.robot().model.joints().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY));
-        array(py, &[self.robot().model.joint_names().len()], limits)
+        read_only(array(py, &[self.robot().model.joint_names().len()], limits)?)
     }
 
     /// Inertial parameters π: ten numbers a body, five a joint; see `regressor`.

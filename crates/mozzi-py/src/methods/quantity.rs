@@ -77,7 +77,9 @@ fn text<'a>(given: &'a Arguments, slot: Slot) -> PyResult<Option<&'a str>> {
 pub fn rows(given: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
     let kind = given.get_type().name()?;
     given.extract().map_err(|error: PyErr| match error.is_instance_of::<PyException>(given.py()) {
-        true => PyTypeError::new_err(format!("rows is a {kind}, expected a sequence of row numbers from 0 to 5")),
+        true => {
+            PyTypeError::new_err(format!("rows is {given} ({kind}), expected a sequence of row numbers from 0 to 5"))
+        }
         false => error,
     })
 }

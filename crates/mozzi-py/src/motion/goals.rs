@@ -2,8 +2,9 @@
 
 use crate::arguments::Given;
 use crate::array::{Numbers, wrong_shape};
+use crate::describe::{pose, rotation};
 use crate::failure::place;
-use mozzi::{Mat3, SE3, SO3, Vec3};
+use mozzi::{Mat3, Vec3};
 use mozzi_motion::Goal;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -73,10 +74,10 @@ impl<'py> Goals<'py> {
             let row4 = |k: usize| std::array::from_fn(|column| x[4 * k + column]);
             match self.kind {
                 Kind::Position => Ok(Goal::Position(Vec3(row3(0)))),
-                Kind::Pose => SE3::from_matrix(std::array::from_fn(row4))
+                Kind::Pose => pose(std::array::from_fn(row4))
                     .map(Goal::Pose)
-                    .map_err(|error| refused(index, error.to_string())),
-                Kind::Orientation => SO3::from_matrix(Mat3::from_rows(std::array::from_fn(row3)))
+                    .map_err(|error| refused(index, Python::attach(|py| error.value(py).to_string()))),
+                Kind::Orientation => rotation(Mat3::from_rows(std::array::from_fn(row3)))
                     .map(Goal::Orientation)
                     .map_err(|error| refused(index, error.to_string())),
             }

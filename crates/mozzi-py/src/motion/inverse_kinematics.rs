@@ -6,6 +6,7 @@ use crate::arguments::Given;
 use crate::array::{Numbers, common_leading};
 use crate::describe::refused;
 use crate::failure::{of_motion, of_one_motion};
+use crate::interrupt::Interrupt;
 use crate::model::{PyModel, array};
 use crate::threads::Threads;
 use mozzi::{FrameId, Model};
@@ -74,14 +75,14 @@ impl PyInverseKinematics {
     }
 
     /// Solves all targets on this many threads; each thread takes the next unsolved target.
-    fn solve_on_threads(&self, count: usize, tasks: &[Task]) -> Result<Vec<Found>, Failure> {
+    fn solve_on_threads(&self, count: usize, tasks: &[Task], interrupt: &Interrupt) -> Result<Vec<Found>, Failure> {
         let next = AtomicUsize::new(0);
-        let work = || -> Result<Vec<(usize, Found)>, Failure> {
+        let work = |stop: &dyn Fn() -> bool| -> Result<Vec<(usize, Found)>, Failure> {
             let mut found = Vec::new();
             let mut solver = self.solver().map_err(|error| Box::new((0, error)))?;
             loop {
                 let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(Task { goal, guess, near }) = tasks.get(index) else { return Ok(found) };
+                let Some(Task { goal, guess, near }) = tasks.get(index).filter(|_| !stop()) else { return Ok(found) };
                 let secondary = near.map_or(Secondary::None, Secondary::Near);
                 let one =
                     Found::of(solver.solve_with(*goal, guess, &secondary)).map_err(|error| Box::new((index, error)))?;
@@ -89,8 +90,9 @@ impl PyInverseKinematics {
             }
         };
         let mut parts = std::thread::scope(|scope| {
-            let others: Vec<_> = (1..count.min(tasks.len())).map(|_| scope.spawn(work)).collect();
-            let mut parts = vec![work()];
+            let others: Vec<_> =
+                (1..count.min(tasks.len())).map(|_| scope.spawn(|| work(&|| interrupt.is_raised()))).collect();
+            let mut parts = vec![work(&|| interrupt.stop())];
             parts.extend(others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic))));
             parts
         });
@@ -277,7 +279,10 @@ impl PyInverseKinematics {
                 let cores = || std::thread::available_parallelism().map_or(1, usize::from);
                 let count = threads.map_or_else(cores, |Threads(count)| count);
                 let failed = |failure: Failure| of_one_motion(failure.1, failure.0, &leading);
-                py.detach(|| self.solve_on_threads(count, &tasks)).map_err(failed)?
+                let interrupt = Interrupt::new();
+                let found = py.detach(|| self.solve_on_threads(count, &tasks, &interrupt));
+                interrupt.check()?;
+                found.map_err(failed)?
             }
         };
         if must_reach && let Some((index, found)) = all.iter().enumerate().find(|(_, found)| !found.is_reached()) {

@@ -8,6 +8,7 @@ use crate::arguments::Given;
 use crate::array::{Numbers, list, wrong_shape};
 use crate::describe::refused;
 use crate::failure::of_motion;
+use crate::interrupt::waited;
 use crate::model::PyModel;
 use crate::results::named;
 use mozzi::Model;
@@ -141,16 +142,19 @@ impl PyPath {
     /// True
     #[pyo3(signature = (*, velocity=None, acceleration=None, torque=None, intervals=200))]
     fn time_optimal<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         velocity: Given<'_, 'py>,
         acceleration: Given<'_, 'py>,
         torque: Given<'_, 'py>,
         intervals: usize,
     ) -> PyResult<PyProfile> {
-        let (model, path) = (self.model(), self.path()?);
-        let limits = limits(model, velocity, acceleration, torque)?;
-        py.detach(|| time_optimal(model, &path, &limits, intervals)).map(PyProfile).map_err(of_motion)
+        let limits = limits(slf.get().model(), velocity, acceleration, torque)?;
+        let this = slf.clone().unbind();
+        let found = waited(slf.py(), move || {
+            let this = this.get();
+            time_optimal(this.model(), &this.path()?, &limits, intervals).map_err(of_motion)
+        })?;
+        found.map(PyProfile)
     }
 
     /// Scale a profile to the shortest duration that keeps the limits of `time_optimal`.
@@ -183,17 +187,20 @@ impl PyPath {
     /// 3.0
     #[pyo3(signature = (profile, *, velocity=None, acceleration=None, torque=None, samples=600))]
     fn stretched<'py>(
-        &self,
-        py: Python<'py>,
-        profile: &PyProfile,
+        slf: &Bound<'py, Self>,
+        profile: &Bound<'py, PyProfile>,
         velocity: Given<'_, 'py>,
         acceleration: Given<'_, 'py>,
         torque: Given<'_, 'py>,
         samples: usize,
     ) -> PyResult<PyProfile> {
-        let (model, path, profile) = (self.model(), self.path()?, &profile.0);
-        let limits = limits(model, velocity, acceleration, torque)?;
-        py.detach(|| stretched(model, &path, profile, &limits, samples)).map(PyProfile).map_err(of_motion)
+        let limits = limits(slf.get().model(), velocity, acceleration, torque)?;
+        let (this, profile) = (slf.clone().unbind(), profile.clone().unbind());
+        let found = waited(slf.py(), move || {
+            let (this, profile) = (this.get(), &profile.get().0);
+            stretched(this.model(), &this.path()?, profile, &limits, samples).map_err(of_motion)
+        })?;
+        found.map(PyProfile)
     }
 
     /// The robot that moves along the path.

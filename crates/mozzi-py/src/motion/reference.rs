@@ -218,6 +218,9 @@ impl PyHold {
         let robot = &model.get().robot().model;
         let theta = list("theta", theta, &[robot.nq()])?;
         robot.check_configuration(&theta).map_err(of_model)?;
+        if let Some(k) = theta.iter().position(|x| !x.is_finite()) {
+            return Err(refused(format!("theta[{k}] is {}, expected a finite number", theta[k])));
+        }
         let reference = PyReference { source: Source::Hold(Hold::new(&theta, robot.n())), model };
         Ok(PyClassInitializer::from(reference).add_subclass(PyHold))
     }

@@ -252,8 +252,9 @@ pub fn simulate<'py>(
 
     let (n, rows) = (model.n(), 1 + options.steps.div_ceil(options.record_every));
     let table = |width| Table::new(py, leading, rows, width);
-    let mut record =
-        Record { t: Vec::with_capacity(rows), theta: table(model.nq())?, dtheta: table(n)?, tau: table(n)? };
+    // memory is refused by NumPy, as an exception
+    let (theta, dtheta, tau) = (table(model.nq())?, table(n)?, table(n)?);
+    let mut record = Record { t: Vec::new(), theta, dtheta, tau };
     match torque {
         _ if start[1].is_empty() => {
             record.t.extend((0..=options.steps).filter(|&k| options.is_recorded(k)).map(|k| options.time(k)))

@@ -8,7 +8,7 @@ mod rollout;
 mod watched;
 
 use crate::arguments::Given;
-use crate::array::{Numbers, common_leading};
+use crate::array::{Numbers, common_leading, shown};
 use crate::model::PyModel;
 use crate::threads::Threads;
 use mozzi::Vec3;
@@ -121,7 +121,8 @@ impl PyModel {
     /// until : str, callable, or a list of them, optional
     ///     Conditions that end the motion: a text such as 'elbow > 1.2', which holds when the quantity rises through
     ///     the value ('<': falls, '=': either), for a joint, 'theta_2', 'dtheta_2' or 'tool0.z'; 'joint-limit'; or a
-    ///     function, by a zero of `function(t, theta, dtheta)`. One start only.
+    ///     function, by a zero of `function(t, theta, dtheta)`, or, if it returns a bool, where it becomes True. One
+    ///     start only.
     /// events : str, callable, or a list of them, optional
     ///     Conditions of the same form, which are reported in the result's `events` and do not end the motion. One
     ///     start only.
@@ -219,6 +220,13 @@ impl PyModel {
         let mut tables = vec![&mut theta, &mut dtheta];
         if let Torque::Constant(tau) = &mut torque {
             tables.push(tau);
+        }
+        // a row of torques for each step, as a rollout takes them, is no torque of many starts
+        let states = tables[..2].iter().all(|table| table.leading(1).is_empty());
+        if let Some(tau) = tables.get(2).filter(|tau| states && steps > 1 && tau.leading(1) == [steps]) {
+            let (found, n) = (shown(&tau.shape), this.robot().model.n());
+            let expected = format!("({n},), constant, or a function: torques of each step are those of `rollout`");
+            return Err(PyValueError::new_err(format!("torque has shape {found}, expected {expected}")));
         }
         let leading = common_leading(tables.iter().map(|table| (table.name, table.leading(1))))?;
         tables.into_iter().try_for_each(|table| table.spread::<f64>(&leading, 1))?;

@@ -79,7 +79,7 @@ pub fn simulate<'py>(
     let simulation = Simulation {
         contacts,
         options: *options,
-        events: watched.events(model, &raised)?,
+        events: watched.events(model, [theta, dtheta], &raised)?,
         forward_dynamics: this.robot().compiled.as_ref().and_then(|machine| machine.code.simulator()),
     };
     let go = |input: &mut dyn Input| run(py, this.robot(), [theta, dtheta], input, &simulation, &raised);

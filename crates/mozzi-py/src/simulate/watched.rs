@@ -4,8 +4,8 @@ use crate::failure::of_model;
 use crate::model::array;
 use crate::results::named;
 use mozzi::Model;
-use mozzi_sim::{Event, Occurrence, Stopped};
-use pyo3::exceptions::PyTypeError;
+use mozzi_sim::{Direction, Event, Occurrence, Stopped};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 use std::cell::RefCell;
@@ -22,7 +22,12 @@ impl<'py> Watched<'_, 'py> {
     }
 
     /// An exception raised by a function is kept.
-    pub fn events<'e>(&self, model: &'e Model, raised: &'e RefCell<Option<PyErr>>) -> PyResult<Vec<Event<'e>>>
+    pub fn events<'e>(
+        &self,
+        model: &'e Model,
+        start: [&[f64]; 2],
+        raised: &'e RefCell<Option<PyErr>>,
+    ) -> PyResult<Vec<Event<'e>>>
     where
         'py: 'e,
     {
@@ -32,7 +37,7 @@ impl<'py> Watched<'_, 'py> {
             let one = given.is_callable() || given.is_instance_of::<PyString>();
             let list = if one { vec![given.clone()] } else { given.try_iter()?.collect::<PyResult<_>>()? };
             for each in list {
-                let these = event(name, each, model, raised)?;
+                let these = event(name, each, model, start, raised)?;
                 events.extend(these.into_iter().map(|event| Event { stop, ..event }));
             }
         }
@@ -44,6 +49,7 @@ fn event<'e, 'py: 'e>(
     name: &str,
     given: Bound<'py, PyAny>,
     model: &'e Model,
+    start: [&[f64]; 2],
     raised: &'e RefCell<Option<PyErr>>,
 ) -> PyResult<Vec<Event<'e>>> {
     if given.is_instance_of::<PyString>() {
@@ -55,16 +61,38 @@ fn event<'e, 'py: 'e>(
         return Err(PyTypeError::new_err(format!("{name} has an entry of type {found}, expected {expected}")));
     }
     let called = given.getattr("__name__").and_then(|name| name.extract::<String>()).unwrap_or_else(|_| name.into());
-    let function = move |t: f64, theta: &[f64], dtheta: &[f64]| {
+    let call = move |t: f64, [theta, dtheta]: [&[f64]; 2]| {
         let py = given.py();
         let list = |x: &[f64]| array(py, &[x.len()], x.iter().copied());
-        let call = || given.call1((t, list(theta)?, list(dtheta)?))?.extract::<f64>();
-        call().unwrap_or_else(|error| {
+        given.call1((t, list(theta)?, list(dtheta)?))
+    };
+    let word = name.to_string();
+    let answer = move |t: f64, state: [&[f64]; 2]| -> PyResult<(f64, bool)> {
+        let answer = call(t, state)?;
+        if let Ok(holds) = answer.extract::<bool>() {
+            return Ok((if holds { 1.0 } else { -1.0 }, true));
+        }
+        let number = answer.extract::<f64>().map_err(|_| {
+            PyTypeError::new_err(format!("the function of {word} answered {answer}, expected a number or a bool"))
+        });
+        Ok((number?, false))
+    };
+    // a bool counts where it becomes true
+    let (at_start, is_bool) = answer(0.0, start)?;
+    if is_bool && at_start > 0.0 {
+        let when = "it counts when it becomes True";
+        return Err(PyValueError::new_err(format!(
+            "the function of {name} is True at the start, expected False: {when}"
+        )));
+    }
+    let direction = if is_bool { Direction::Rising } else { Direction::Any };
+    let function = move |t: f64, theta: &[f64], dtheta: &[f64]| {
+        answer(t, [theta, dtheta]).map(|(value, _)| value).unwrap_or_else(|error| {
             raised.borrow_mut().get_or_insert(error);
             f64::NAN
         })
     };
-    Ok(vec![Event::new(called, function)])
+    Ok(vec![Event { direction, ..Event::new(called, function) }])
 }
 
 /// A list of `Occurrence`s.
