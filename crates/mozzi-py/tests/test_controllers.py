@@ -146,3 +146,6 @@ def test_what_is_wrong_is_named(ur5, motion):
     fall = pendulum.simulate([0.1, 0.0], [0.0, 0.0], 0.1, 10)
     with pytest.raises(ValueError, match=r"the reference's theta has shape \(6,\), expected \(2,\): of the same robot"):
         tracking_error(fall, motion)
+    for other, kind in [(np.zeros((3, 6)), "ndarray"), (motion.at(0.0), "Desired")]:
+        with pytest.raises(TypeError, match=f"motion is a {kind}, expected the Trajectory or Trajectories"):
+            tracking_error(other, motion)
