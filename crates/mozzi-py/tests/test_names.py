@@ -123,7 +123,10 @@ def test_names_of_the_module_and_of_a_class_that_is_not_called():
     ):
         with pytest.raises(AttributeError, match=meant):
             getattr(mozzi, guess)
-    for guess, meant in (("load", r"that is mozzi.Model.load\(path\)"), ("iiwa", "the robots are anymal, .*ur5; mozzi.Model.load")):
+    for guess, meant in (
+        ("load", r"that is mozzi.Model.load\(path\)"),
+        ("iiwa", "the robots are anymal, .*ur5; mozzi.Model.load"),
+    ):
         with pytest.raises(AttributeError, match=meant):
             getattr(mozzi.models, guess)
     with pytest.raises(TypeError, match=r"`mozzi.Model.load\(path\)` reads"):
