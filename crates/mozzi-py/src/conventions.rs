@@ -128,6 +128,10 @@ impl Pinocchio {
         self.0.nq()
     }
 
+    fn __repr__(&self) -> String {
+        format!("<mozzi.conventions.Pinocchio: {} joints, q has {} entries>", self.0.joints().len(), self.0.nq())
+    }
+
     /// Convert a Jacobian, shape (..., 6, n), angular rows first, to Pinocchio's, linear rows first.
     fn jacobian<'py>(&self, py: Python<'py>, J: &Bound<'py, PyAny>) -> Found<'py> {
         each(py, [], Some(("J", J)), true, |[], J| {
@@ -174,6 +178,10 @@ impl MuJoCo {
     #[getter]
     fn joints(&self) -> Vec<usize> {
         self.0.joints().to_vec()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<mozzi.conventions.MuJoCo: {} joints>", self.0.joints().len())
     }
 
     /// Convert h, shape (..., n), at θ and θ̇ to MuJoCo's qfrc_bias, with mozzi's M.

@@ -1,7 +1,7 @@
 //! The functions behind `mozzi.modern_robotics`: they take the book's lists at every call, as the Modern Robotics
 //! package does.
 
-use crate::array::{Numbers, wrong_shape};
+use crate::array::{Numbers, shown, wrong_shape};
 use crate::describe::{pose, refused, rotation};
 use crate::failure::{of_model, of_motion};
 use crate::model::{PyModel, array};
@@ -96,20 +96,35 @@ fn columns(name: &'static str, given: Given, n: usize) -> PyResult<Vec<Twist>> {
 
 /// The first matrices of a list, or of an array.
 fn first<const K: usize>(name: &'static str, given: Given, count: usize) -> PyResult<Vec<[[f64; K]; K]>> {
-    let one = |item: Bound<'_, PyAny>| -> PyResult<[[f64; K]; K]> {
-        match numpy::view::<f64>(&item) {
-            Some((&[k, l], numbers)) if (k, l) == (K, K) => Ok(square(numbers)),
-            _ => Numbers::matrix(name, &item, "a matrix in each place of the list"),
+    let one = |(place, item): (usize, Bound<'_, PyAny>)| -> PyResult<[[f64; K]; K]> {
+        if let Some((&[k, l], numbers)) = numpy::view::<f64>(&item)
+            && (k, l) == (K, K)
+        {
+            return Ok(square(numbers));
         }
+        let mut numbers = Numbers::new(name, &item)?;
+        if numbers.shape != [K, K] {
+            return Err(wrong_shape(&format!("{name}[{place}]"), &numbers.shape, shown(&[K, K])));
+        }
+        numbers.spread::<f64>(&[], 2)?;
+        Ok(square(numbers.slice::<f64>()?))
     };
     let short = |length: usize| {
         Err(PyValueError::new_err(format!("{name} has {length} matrices, expected {count} for this many joints")))
     };
     if let Ok(list) = given.cast::<PyList>() {
-        return if list.len() < count { short(list.len()) } else { list.iter().take(count).map(one).collect() };
+        return if list.len() < count {
+            short(list.len())
+        } else {
+            list.iter().take(count).enumerate().map(one).collect()
+        };
     }
     if let Ok(tuple) = given.cast::<PyTuple>() {
-        return if tuple.len() < count { short(tuple.len()) } else { tuple.iter().take(count).map(one).collect() };
+        return if tuple.len() < count {
+            short(tuple.len())
+        } else {
+            tuple.iter().take(count).enumerate().map(one).collect()
+        };
     }
     let mut numbers = Numbers::new(name, given)?;
     match numbers.shape[..] {
@@ -158,7 +173,10 @@ fn jacobian<'py>(py: Python<'py>, screws: Given<'_, 'py>, thetalist: Given<'_, '
 /// τ is k times the model's.
 fn chain(n: usize, Mlist: Given, Glist: Given, Slist: Given) -> PyResult<(Model, Vec<f64>)> {
     let home = first::<4>("Mlist", Mlist, n + 1)?;
-    let home = home.into_iter().map(pose).collect::<PyResult<Vec<_>>>()?;
+    let numbered = |(k, T): (usize, [[f64; 4]; 4])| {
+        pose(T).map_err(|error| PyValueError::new_err(format!("Mlist[{k}]: {}", error.value(Mlist.py()))))
+    };
+    let home = home.into_iter().enumerate().map(numbered).collect::<PyResult<Vec<_>>>()?;
     let inertias = first::<6>("Glist", Glist, n)?;
     let inertias = inertias.into_iter().enumerate().map(|(k, G)| {
         SpatialInertia::from_matrix(G).map_err(|error| PyValueError::new_err(format!("Glist[{k}]: {error}")))

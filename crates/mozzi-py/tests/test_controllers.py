@@ -125,6 +125,22 @@ def test_a_floating_base_has_no_motors(ur5):
         ComputedTorque(free, OfJoints(free, Hold(ur5, START)), p=1.0, d=1.0)
 
 
+def test_controllers_show_their_gains(ur5, motion):
+    stiff = [20, 20, 20, 1000, 1000, 1000]
+    computed = ComputedTorque(ur5, motion, p=400.0, d=40.0)
+    for made, expected in [
+        (PdGravity(ur5, motion, p=P, d=5), "PdGravity of 'ur5': p = (600, 600, 400, 300, 30, 30), d = 5"),
+        (computed, "ComputedTorque of 'ur5': p = 400, d = 40"),
+        (TaskSpace(ur5, motion, p=100, d=20), "TaskSpace of 'tool0' of 'ur5': p = 100, d = 20"),
+        (
+            Impedance(ur5, motion, "forearm_link", stiffness=stiff, damping=1.5),
+            "Impedance of 'forearm_link' of 'ur5': stiffness = (20, 20, 20, 1000, 1000, 1000), damping = 1.5",
+        ),
+        (Saturated(ur5, computed), f"Saturated of 'ur5': {computed!r}"),
+    ]:
+        assert repr(made) == f"<mozzi.controllers.{expected}>"
+
+
 def test_what_is_wrong_is_named(ur5, motion):
     control = ComputedTorque(ur5, motion, p=1.0, d=1.0)
     pendulum = mozzi.models.double_pendulum()
@@ -146,3 +162,6 @@ def test_what_is_wrong_is_named(ur5, motion):
     fall = pendulum.simulate([0.1, 0.0], [0.0, 0.0], 0.1, 10)
     with pytest.raises(ValueError, match=r"the reference's theta has shape \(6,\), expected \(2,\): of the same robot"):
         tracking_error(fall, motion)
+    for other, kind in [(np.zeros((3, 6)), "ndarray"), (motion.at(0.0), "Desired")]:
+        with pytest.raises(TypeError, match=f"motion is a {kind}, expected the Trajectory or Trajectories"):
+            tracking_error(other, motion)

@@ -82,6 +82,13 @@ def test_six_vectors():
         conventions.linear_first([1, 2, 3])
 
 
+def test_bridges_show_their_sizes():
+    anymal = mozzi.models.anymal(floating=True)
+    bridge = conventions.Pinocchio(anymal)
+    assert repr(bridge) == f"<mozzi.conventions.Pinocchio: 12 joints, q has {bridge.nq} entries>"
+    assert repr(conventions.MuJoCo(anymal)) == "<mozzi.conventions.MuJoCo: 12 joints>"
+
+
 def test_errors(ur5):
     bridge = conventions.Pinocchio(ur5)
     with pytest.raises(ValueError, match="theta has 5 entries, expected 6"):

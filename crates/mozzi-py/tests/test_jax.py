@@ -389,6 +389,18 @@ def test_arrays_on_a_gpu(robot, dtype):
     check(jax.jit(partial(mj.mass_matrix, robot))(x[0]), robot.mass_matrix(host[0]), "mass matrix")
 
 
+def test_names_are_those_of_robots():
+    assert {name for name in dir(mj) if not name.startswith("_")} == set(mj.__all__)
+    for guess, meant in [
+        ("coriolis_matrix", "mozzi.Model.coriolis_matrix computes it in NumPy.*mozzi.jax has Rollout, bias_forces, "),
+        ("rnea", "that is mozzi.jax.inverse_dynamics"),
+        ("name", "'name': mozzi.jax has"),
+        ("__wrapped__", "'__wrapped__'$"),
+    ]:
+        with pytest.raises(AttributeError, match=meant):
+            getattr(mj, guess)
+
+
 def test_the_package_does_not_import_jax(tmp_path):
     code = (
         "import sys, mozzi; assert 'jax' not in sys.modules\ntry: import mozzi.jax\nexcept ImportError as e: print(e)"

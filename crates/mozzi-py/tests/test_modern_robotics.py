@@ -217,6 +217,12 @@ def test_errors_name_the_list(lists):
         mr.MassMatrix(theta, M, G, S[:, 0])
     with pytest.raises(ValueError, match=r"Glist\[0\]: "):
         mr.MassMatrix(theta, M, np.ones_like(G), S)
+    with pytest.raises(ValueError, match=r"Glist\[0\] has shape \(3, 3\), expected \(6, 6\)"):
+        mr.MassMatrix(theta, list(M), [np.eye(3)] * len(G), S)
+    with pytest.raises(ValueError, match=r"Mlist\[1\]: .*rotation"):
+        mr.MassMatrix(theta, [M[0], np.diag([2.0, 1, 1, 1]), *M[2:]], G, S)
+    with pytest.raises(ValueError, match=r"Mlist\[0\]: the last row is"):
+        mr.MassMatrix(theta, np.ones_like(M), G, S)
     with pytest.raises(ValueError, match="rotation"):
         mr.MatrixLog3(2 * np.eye(3))
     with pytest.raises(ValueError, match="last row"):

@@ -88,7 +88,17 @@ def test_sdformat_is_read_by_its_content(tmp_path):
         ("rnea", r"`inverse_dynamics\(theta, dtheta, ddtheta\)`"),
         ("M", r"`mass_matrix\(theta\)`"),
         ("nv", "`n` is the number of velocities"),
+        ("njoints", "`n` is the number of velocities"),
         ("jacobian", "`body_jacobian"),
+        ("jac_site", "`body_jacobian"),
+        ("inv_mass_matrix", r"`mass_matrix_inverse\(theta\)`"),
+        ("minv", r"`mass_matrix_inverse\(theta\)`"),
+        ("torque_limits", "`effort_limits`"),
+        ("gravity_compensation", r"`gravity_forces\(theta\)`"),
+        ("operational_space", r"`task_space_dynamics\(theta, dtheta, frame"),
+        ("manipulability", r"det\(J @ J.T\)"),
+        ("from_file", r"`mozzi.Model.load\(path\)`"),
+        ("from_xml_path", r"`mozzi.Model.load\(path\)`"),
         ("ik", "`mozzi.InverseKinematics"),
         ("jointnames", "did you mean `joint_names`"),
         ("total_energy", "`kinetic_energy"),
@@ -102,11 +112,36 @@ def test_an_attribute_of_others_names_ours(ur5, guess, meant):
 
 
 def test_names_of_the_module_and_of_a_class_that_is_not_called():
-    for guess, meant in (("load", "mozzi.Model.load"), ("robots", "mozzi.models"), ("zzz", "'zzz'$")):
+    for guess, meant in (
+        ("load", "mozzi.Model.load"),
+        ("robots", "mozzi.models"),
+        ("rnea", "mozzi.Model.inverse_dynamics"),
+        ("aba", "mozzi.Model.forward_dynamics"),
+        ("buildModelFromUrdf", "mozzi.Model.from_urdf"),
+        ("MjModel", "mozzi.Model.from_mjcf"),
+        ("zzz", "'zzz'$"),
+    ):
         with pytest.raises(AttributeError, match=meant):
             getattr(mozzi, guess)
+    for guess, meant in (
+        ("load", r"that is mozzi.Model.load\(path\)"),
+        ("iiwa", "the robots are anymal, .*ur5; mozzi.Model.load"),
+    ):
+        with pytest.raises(AttributeError, match=meant):
+            getattr(mozzi.models, guess)
     with pytest.raises(TypeError, match=r"`mozzi.Model.load\(path\)` reads"):
         mozzi.Model("ur5")
+
+
+@pytest.mark.parametrize("name", ["controllers", "conventions", "models", "modern_robotics", "trajectories"])
+def test_modules_list_their_own_names(name):
+    module = getattr(mozzi, name)
+    assert {name for name in dir(module) if not name.startswith("_")} == set(module.__all__)
+
+
+def test_the_package_lists_its_own_names():
+    own = {name for name in dir(mozzi) if not name.startswith("_")} - {"jax", "torch"}  # if imported
+    assert own == {name for name in mozzi.__all__ if not name.startswith("_")}
 
 
 def test_a_motion_starts_at_rest_and_takes_two_seconds(ur5):

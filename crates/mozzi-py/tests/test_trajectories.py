@@ -194,6 +194,33 @@ def test_positions_to_hold_and_floating_bases(ur5):
         OfJoints(free, Hold(mozzi.models.double_pendulum(), [0, 0]))
 
 
+def test_paths_and_references_show_what_they_are(ur5):
+    pendulum, anymal = mozzi.models.double_pendulum(), mozzi.models.anymal()
+    name = pendulum.name
+    line = Line(pendulum, [0.0, 0.5], [1.0, -2.0])
+    fall = pendulum.simulate([1.0, 0.0], [0.0, 0.0], 1.5, 10)
+    goal = ur5.forward_kinematics(START)
+    goal[:3, 3] += [-0.1, 0.1, -0.1]
+    for made, expected in [
+        (line, f"<mozzi.trajectories.Line of '{name}' from (0, 0.5) to (1, -2)>"),
+        (Spline(ur5, VIA), f"<mozzi.trajectories.Spline of 'ur5' through {len(VIA)} points>"),
+        (Timed(line, Profile.cubic(2.5)), f"<mozzi.trajectories.Timed of '{name}': a Line in 2.5 s>"),
+        (Recorded(pendulum, fall.t, fall.theta), f"<mozzi.trajectories.Recorded of '{name}': 1.5 s>"),
+        (Hold(pendulum, [0.5, 1.0]), f"<mozzi.trajectories.Hold of '{name}' at (0.5, 1)>"),
+        (
+            Hold(anymal, anymal.neutral_configuration),
+            "<mozzi.trajectories.Hold of 'anymal' at (1, 0, 0, 0, 0, 0, 0, 0, …)>",
+        ),
+        (
+            OfJoints(ur5.with_floating_base(), Timed(Line(ur5, VIA[0], VIA[1]), Profile.cubic(1.0))),
+            "<mozzi.trajectories.OfJoints of 'ur5': 1 s>",
+        ),
+    ]:
+        assert repr(made) == expected
+    path = Cartesian(ur5, START, goal)
+    assert repr(path) == f"<mozzi.trajectories.Cartesian of 'ur5' through {path.knots} solutions of inverse kinematics>"
+
+
 def test_wrong_arguments_are_named(ur5):
     line, profile = Line(ur5, VIA[0], VIA[1]), Profile.cubic(1.0)
     for call, words in [

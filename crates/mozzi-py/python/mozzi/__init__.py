@@ -22,6 +22,8 @@ from ._mozzi import (
     SingularError,
     __version__,
 )
+from ._names import listed as _listed
+from ._names import missing as _missing
 from ._notebook import Page
 from ._quantities import *
 from ._results import (
@@ -96,14 +98,28 @@ __all__ += _quantities.__all__
 if not TYPE_CHECKING:  # for which every name would exist
     _MEANT = {
         "load": "mozzi.Model.load(path)",
+        "load_model": "mozzi.Model.load(path)",
         "open": "mozzi.Model.load(path)",
+        "buildModelFromUrdf": "mozzi.Model.from_urdf(path)",
+        "buildModelFromXML": "mozzi.Model.from_urdf_string(text)",
+        "buildModelFromMJCF": "mozzi.Model.from_mjcf(path)",
+        "MjModel": "mozzi.Model.from_mjcf(path)",
         "robots": "mozzi.models: ur5(), panda(), …, or mozzi.Model.load(name)",
         "simulate": "mozzi.Model.simulate(theta, dtheta, duration, steps)",
         "ik": "mozzi.InverseKinematics(model, frame)",
         "inverse_kinematics": "mozzi.InverseKinematics(model, frame)",
+        "rnea": "mozzi.Model.inverse_dynamics(theta, dtheta, ddtheta)",
+        "inverse_dynamics": "mozzi.Model.inverse_dynamics(theta, dtheta, ddtheta)",
+        "aba": "mozzi.Model.forward_dynamics(theta, dtheta, tau)",
+        "forward_dynamics": "mozzi.Model.forward_dynamics(theta, dtheta, tau)",
+        "crba": "mozzi.Model.mass_matrix(theta)",
+        "mass_matrix": "mozzi.Model.mass_matrix(theta)",
+        "fk": "mozzi.Model.forward_kinematics(theta, frame)",
+        "forward_kinematics": "mozzi.Model.forward_kinematics(theta, frame)",
     }
 
     def __getattr__(name: str) -> object:
         """The name that was meant, for one that does not exist."""
-        meant = f": that is {_MEANT[name]}" if name in _MEANT else ""
-        raise AttributeError(f"module 'mozzi' has no attribute '{name}'{meant}", name=name)
+        raise _missing("mozzi", name, _MEANT)
+
+    __dir__ = _listed(globals())

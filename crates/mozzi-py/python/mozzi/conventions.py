@@ -24,8 +24,11 @@ import numpy as np
 from ._mozzi import Model
 from ._mozzi import MuJoCo as _MuJoCo
 from ._mozzi import Pinocchio as _Pinocchio
+from ._names import listed as _listed
 
 __all__ = ["MuJoCo", "Pinocchio", "angular_first", "external", "from_external", "linear_first"]
+
+__dir__ = _listed(globals())
 
 
 def linear_first(six: Any) -> Any:

@@ -20,11 +20,13 @@ which results are differentiable: ∂τ/∂π = Y.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _tangent
 from ._jax import Operands, bind, quantity  # first: it reports that JAX is missing
 from ._mozzi import Model
+from ._names import listed as _listed
+from ._names import missing as _missing
 
 import jax
 import jax.numpy as jnp
@@ -47,6 +49,24 @@ __all__ = [
 
 ArrayLike = Any
 Array = jax.Array
+
+if not TYPE_CHECKING:  # for which every name would exist
+
+    def __getattr__(name: str) -> object:
+        """The function that was meant, or all that exist, for a name that does not exist."""
+        meant = {
+            "rnea": "mozzi.jax.inverse_dynamics",
+            "aba": "mozzi.jax.forward_dynamics",
+            "crba": "mozzi.jax.mass_matrix",
+            "simulate": "mozzi.jax.rollout",
+            "jacobian": "mozzi.jax.body_jacobian or space_jacobian",
+        }
+        others = f"mozzi.jax has {', '.join(__all__)}"
+        if callable(getattr(Model, name, None)):
+            others = f"mozzi.Model.{name} computes it in NumPy, without JAX's gradients; {others}"
+        raise _missing("mozzi.jax", name, meant, others)
+
+    __dir__ = _listed(globals())
 
 
 def _check(model: Model) -> None:

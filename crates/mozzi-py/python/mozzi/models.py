@@ -1,6 +1,12 @@
 """The embedded robots, each a function: ``mozzi.models.ur5()``."""
 
+from typing import TYPE_CHECKING
+
 from ._mozzi import Model
+from ._names import listed as _listed
+from ._names import missing as _missing
+
+__all__ = ["anymal", "double_pendulum", "furuta_pendulum", "panda", "two_link_planar", "ur5"]
 
 
 def ur5(*, floating: bool = False) -> Model:
@@ -91,3 +97,14 @@ def furuta_pendulum(*, floating: bool = False) -> Model:
     Model
     """
     return Model._embedded("furuta_pendulum", floating)
+
+
+if not TYPE_CHECKING:  # for which every name would exist
+
+    def __getattr__(name: str) -> object:
+        """The robots and the reader of files, for a name that does not exist."""
+        meant = dict.fromkeys(("load", "open", "from_file", "from_urdf"), "mozzi.Model.load(path)")
+        robots = f"the robots are {', '.join(__all__)}; mozzi.Model.load(path) reads a file"
+        raise _missing("mozzi.models", name, meant, robots)
+
+    __dir__ = _listed(globals())

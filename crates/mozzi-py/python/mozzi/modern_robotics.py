@@ -77,6 +77,7 @@ from typing import Any
 import numpy as np
 
 from ._mozzi import _modern_robotics as _compiled
+from ._names import listed as _listed
 
 __all__ = [
     "AxisAng3", "AxisAng6", "Adjoint", "CartesianTrajectory", "ComputedTorque", "CubicTimeScaling", "DistanceToSE3",
@@ -87,6 +88,8 @@ __all__ = [
     "QuinticTimeScaling", "RotInv", "RpToTrans", "ScrewToAxis", "ScrewTrajectory", "SimulateControl", "TestIfSE3",
     "TestIfSO3", "TransInv", "TransToRp", "VecTose3", "VecToso3", "VelQuadraticForces", "ad", "se3ToVec", "so3ToVec",
 ]  # fmt: skip
+
+__dir__ = _listed(globals())
 
 _FAR = 1e9  # the distance of what is no rotation at all, as in the package
 

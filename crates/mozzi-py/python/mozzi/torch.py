@@ -29,12 +29,14 @@ from torch._C._functorch import is_legacy_batchedtensor
 from torch.autograd import forward_ad
 
 from . import _mozzi, _tangent, _torch_gpu
+from ._names import listed as _listed
 from ._torch_operators import known, packed_op, refuse_forward_mode, run, to_positions, value_op
 from ._torch_rollout import check_rows, rollout, steps
 from ._torch_tensors import DTYPES, MODELS, arrays, batched, check
 from ._torch_tensors import tensors as as_tensors
 
 __all__ = ["Model"]
+__dir__ = _listed(globals())
 
 _PLAIN = (Tensor, torch.nn.Parameter)
 

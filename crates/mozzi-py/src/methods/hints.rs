@@ -8,8 +8,11 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 /// Attributes of others, and what is meant.
-const MEANT: [(&[&str], &str); 15] = [
-    (&["nv", "dof", "ndof", "dofs", "num_joints"], "`n` is the number of velocities, `nq` that of positions"),
+const MEANT: [(&[&str], &str); 21] = [
+    (
+        &["nv", "dof", "ndof", "dofs", "num_joints", "njoints"],
+        "`n` is the number of velocities, `nq` that of positions",
+    ),
     (&["joints", "names", "actuated_joint_names"], "`joint_names`"),
     (
         &["limits", "joint_limits", "lower_limits", "upper_limits", "qlim"],
@@ -27,7 +30,25 @@ const MEANT: [(&[&str], &str); 15] = [
     (&["payload", "add_payload"], "`with_payload(frame, inertia)`"),
     (&["ik", "inverse_kinematics"], "`mozzi.InverseKinematics(model, frame).solve(guess, position=…)`"),
     (&["step", "rollouts", "integrate_dynamics"], "`simulate(theta, dtheta, duration, steps)`, `rollout`"),
-    (&["jacobian", "J"], "`body_jacobian(theta, frame=…)`, in the frame's axes, or `space_jacobian`"),
+    (
+        &["jacobian", "J", "jac", "jac_site", "jac_body"],
+        "`body_jacobian(theta, frame=…)`, in the frame's axes, or `space_jacobian`",
+    ),
+    (&["inv_mass_matrix", "inverse_mass_matrix", "minv"], "`mass_matrix_inverse(theta)`"),
+    (&["torque_limits", "torque_limit", "max_torque"], "`effort_limits`"),
+    (
+        &["gravity_compensation"],
+        "`gravity_forces(theta)`; `simulate(…, torque=\"gravity_compensation\")` applies it to the motors",
+    ),
+    (
+        &["operational_space", "task_space"],
+        "`task_space_dynamics(theta, dtheta, frame=…)`; the controller is `mozzi.controllers.TaskSpace`",
+    ),
+    (&["manipulability"], "`numpy.linalg.det(J @ J.T) ** 0.5` with J = `body_jacobian(theta, frame=…)`"),
+    (
+        &["from_file", "from_xml", "from_xml_path", "from_xml_string"],
+        "`mozzi.Model.load(path)`; `from_urdf_string(text)` reads text",
+    ),
     (&["view", "show", "visualize", "display", "plot"], "`play()`; `report(trajectory)` is the page of a motion"),
     (&["save", "write", "to_urdf", "to_mjcf", "to_json", "export"], "`mozzi convert` on the command line writes files"),
 ];

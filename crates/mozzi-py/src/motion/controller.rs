@@ -2,6 +2,7 @@
 
 use super::limits::one_or_each;
 use super::reference::{PyReference, SharedReference};
+use super::repr;
 use super::states::States;
 use crate::array::{shown, wrong_shape};
 use crate::failure::{of_motion, of_state};
@@ -120,6 +121,24 @@ impl PyController {
     #[getter]
     fn reference(&self, py: Python<'_>) -> Py<PyReference> {
         self.reference.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let robot = self.robot();
+        let (kind, frame, first, second) = match &self.law {
+            ControlLaw::PdGravity(Gains { p, d }) => ("PdGravity", None, ("p", &p[..]), ("d", &d[..])),
+            ControlLaw::ComputedTorque(Gains { p, d }) => ("ComputedTorque", None, ("p", &p[..]), ("d", &d[..])),
+            ControlLaw::TaskSpace { frame, law: Law::Acceleration { p, d }, .. } => {
+                ("TaskSpace", Some(*frame), ("p", &p[..]), ("d", &d[..]))
+            }
+            ControlLaw::TaskSpace { frame, law: Law::Impedance { stiffness, damping }, .. } => {
+                ("Impedance", Some(*frame), ("stiffness", &stiffness[..]), ("damping", &damping[..]))
+            }
+        };
+        let gain = |(name, list): (&str, &[f64])| format!("{name} = {}", repr::gains(list));
+        let frame = frame.map_or_else(String::new, |frame| format!("'{}' of ", robot.frame_name(frame)));
+        let robot = &robot.description().name;
+        format!("<mozzi.controllers.{kind} of {frame}'{robot}': {}, {}>", gain(first), gain(second))
     }
 }
 

@@ -9,6 +9,7 @@ pub mod limits;
 mod path;
 mod profile;
 mod reference;
+mod repr;
 mod saturated;
 mod solutions;
 mod states;

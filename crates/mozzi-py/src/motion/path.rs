@@ -4,6 +4,7 @@ use super::frame_path::{pose_of, shape_named};
 use super::instants::Instants;
 use super::limits::limits;
 use super::profile::PyProfile;
+use super::repr::positions;
 use crate::arguments::Given;
 use crate::array::{Numbers, list, wrong_shape};
 use crate::describe::refused;
@@ -27,7 +28,8 @@ pub struct PyPath {
 enum Curve {
     /// Its ends.
     Line([Vec<f64>; 2]),
-    Spline(Spline),
+    /// The spline, and the number of its via points.
+    Spline(Spline, usize),
     Cartesian(Cartesian),
 }
 
@@ -43,6 +45,15 @@ impl PyPath {
         self.model.clone_ref(py)
     }
 
+    /// The name of its class.
+    pub fn kind(&self) -> &'static str {
+        match self.curve {
+            Curve::Line(_) => "Line",
+            Curve::Spline(..) => "Spline",
+            Curve::Cartesian(_) => "Cartesian",
+        }
+    }
+
     /// θ(s).
     ///
     /// # Errors
@@ -50,7 +61,7 @@ impl PyPath {
     pub fn path(&self) -> PyResult<SharedPath<'_>> {
         Ok(match &self.curve {
             Curve::Line([from, to]) => Box::new(Line::new(self.model(), from, to).map_err(of_motion)?),
-            Curve::Spline(spline) => Box::new(spline),
+            Curve::Spline(spline, _) => Box::new(spline),
             Curve::Cartesian(path) => Box::new(path),
         })
     }
@@ -208,6 +219,15 @@ impl PyPath {
     fn python_model(&self, py: Python<'_>) -> Py<PyModel> {
         self.owner(py)
     }
+
+    fn __repr__(&self) -> String {
+        let course = match &self.curve {
+            Curve::Line([from, to]) => format!("from {} to {}", positions(from), positions(to)),
+            Curve::Spline(_, points) => format!("through {points} points"),
+            Curve::Cartesian(path) => format!("through {} solutions of inverse kinematics", path.knots),
+        };
+        format!("<mozzi.trajectories.{} of '{}' {course}>", self.kind(), self.model().description().name)
+    }
 }
 
 /// Straight line of the joints from θ₀ to θ₁, θ₀ ⊕ s(θ₁ ⊖ θ₀); a floating base moves along a screw.
@@ -293,7 +313,7 @@ impl PySpline {
             Some(s) => Spline::new(robot, &list("s", s, &[points.len()])?, &points, ends),
             None => Spline::through(robot, &points, ends),
         };
-        let path = PyPath { curve: Curve::Spline(spline.map_err(of_motion)?), model };
+        let path = PyPath { curve: Curve::Spline(spline.map_err(of_motion)?, points.len()), model };
         Ok(PyClassInitializer::from(path).add_subclass(PySpline))
     }
 }

@@ -3,6 +3,7 @@
 use super::instants::Instants;
 use super::path::{PyPath, rows};
 use super::profile::PyProfile;
+use super::repr::positions;
 use crate::arguments::Given;
 use crate::array::{list, wrong_shape};
 use crate::describe::refused;
@@ -11,6 +12,7 @@ use crate::model::PyModel;
 use crate::results::named;
 use mozzi::Model;
 use mozzi_motion::trajectories::{Desired, Hold, OfJoints, Profile, Recorded, Reference, Timed};
+use mozzi_report::text::scalar;
 use pyo3::prelude::*;
 
 /// A desired motion of a robot, θ_d, θ̇_d and θ̈_d over time, which a controller follows.
@@ -98,6 +100,20 @@ impl PyReference {
     #[getter(model)]
     fn python_model(&self, py: Python<'_>) -> Py<PyModel> {
         self.model.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let (robot, seconds) = (&self.model().description().name, scalar(self.duration()?));
+        Ok(match &self.source {
+            Source::Timed(path, _) => {
+                format!("<mozzi.trajectories.Timed of '{robot}': a {} in {seconds} s>", path.get().kind())
+            }
+            Source::Recorded(_) => format!("<mozzi.trajectories.Recorded of '{robot}': {seconds} s>"),
+            Source::Hold(hold) => {
+                format!("<mozzi.trajectories.Hold of '{robot}' at {}>", positions(&hold.at(0.0).theta))
+            }
+            Source::OfJoints(..) => format!("<mozzi.trajectories.OfJoints of '{robot}': {seconds} s>"),
+        })
     }
 }
 

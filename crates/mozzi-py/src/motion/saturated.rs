@@ -137,4 +137,9 @@ impl PySaturated {
     fn model(&self, py: Python<'_>) -> Py<PyModel> {
         self.model.clone_ref(py)
     }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let robot = &self.model.get().robot().model.description().name;
+        Ok(format!("<mozzi.controllers.Saturated of '{robot}': {}>", self.torque.bind(py).repr()?))
+    }
 }

@@ -5,6 +5,7 @@ use crate::array::{Numbers, shown, wrong_shape};
 use crate::model::{PyModel, array};
 use crate::results::named;
 use mozzi_motion::controllers::tracking_error_of_rows;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 /// Compute the tracking error e = θ_d ⊖ θ of each joint over a simulated motion, or over many.
@@ -39,7 +40,12 @@ pub fn tracking_error<'py>(
     motion: &Bound<'py, PyAny>,
     reference: &PyReference,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let model = motion.getattr("model")?.cast_into::<PyModel>()?;
+    let model = motion.getattr("model").ok().and_then(|model| model.cast_into::<PyModel>().ok());
+    let Some(model) = model else {
+        let kind = motion.get_type().name()?;
+        let why = format!("motion is a {kind}, expected the Trajectory or Trajectories of a simulation");
+        return Err(PyTypeError::new_err(why));
+    };
     let model = &model.get().robot().model;
     if reference.model().nq() != model.nq() {
         let expected = format!("{}: of the same robot", shown(&[model.nq()]));
