@@ -7,7 +7,7 @@ use mozzi::model::Base;
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia};
 use mozzi_urdf::json;
 use mozzi_urdf::{Consequence, LoadError, Loaded, Policy, Settings, XacroArguments};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
 use std::ffi::CString;
@@ -84,7 +84,8 @@ pub fn any(given: &Bound<'_, PyAny>, how: &str, floating: bool, xacro: &Xacro) -
     }
     // a name without a folder and an ending that is no file
     if path.extension().is_none() && path.components().count() == 1 && !path.exists() {
-        return Err(of_loader(py, LoadError::NoSuchRobot { name: path.display().to_string() }));
+        let error = LoadError::NoSuchRobot { name: path.display().to_string() };
+        return Err(PyFileNotFoundError::new_err(error.to_string()));
     }
     if path.extension().is_none_or(|ending| ending != "json") {
         return file(given, how, floating, xacro);

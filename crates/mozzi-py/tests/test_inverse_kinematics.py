@@ -150,3 +150,10 @@ def test_wrong_options_are_named(ur5):
             mozzi.InverseKinematics(ur5, **options)
     with pytest.raises(ValueError, match=r"guess has shape \(3,\), expected \(..., 6\)"):
         mozzi.InverseKinematics(ur5).solve([0, 0, 0], position=[0, 0, 0])
+
+
+def test_goals_beyond_all_reach_cost_few_starts(ur5):
+    far = mozzi.InverseKinematics(ur5).solve(HOME, position=[9.0, 0.0, 0.0])
+    assert not far.reached and far.starts == 20 and far.distance < 8.3 and "out of reach" in far.reason
+    near = mozzi.InverseKinematics(ur5).solve(HOME, position=[0.0, 0.0, 0.0])
+    assert not near.reached and near.starts == 200

@@ -6,6 +6,7 @@
 //! no progress is replaced by another. If the robot is redundant, a [`Secondary`] goal chooses among the solutions:
 //! steps in the null space of J, each followed by steps back to the goal.
 
+mod ball;
 mod bounds;
 mod goal;
 mod options;
@@ -20,6 +21,7 @@ pub use step::Method;
 
 use crate::Error;
 use crate::error::{check, check_open};
+use ball::Ball;
 use bounds::Within;
 use mozzi::kinematics::{body_jacobian, forward_kinematics};
 use mozzi::model::Bounds;
@@ -31,6 +33,9 @@ use step::Step;
 
 /// A start is given up when this many iterations have not halved its error.
 const PATIENCE: usize = 6;
+
+/// Starts towards a goal beyond the robot's reach: for the best that there is.
+const OUTSIDE: usize = 20;
 
 /// Positions that reach a goal.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +92,8 @@ pub struct InverseKinematics<'m> {
     frame: FrameId,
     options: Options,
     bounds: Bounds,
+    /// Where the frame can be.
+    ball: Option<Ball>,
     step: Step,
     delta: Vec<f64>,
     iterations: usize,
@@ -117,8 +124,8 @@ impl<'m> InverseKinematics<'m> {
         // at most one for each ball
         let cones = Vec::with_capacity(bounds.places.len());
         let step = Step { columns: vec![Twist::zero(); n], held: vec![false; n], cones, rows: 0..6 };
-        let room = Room::new(model);
-        Ok(InverseKinematics { model, frame, options, bounds, step, delta: vec![0.0; n], iterations: 0, room })
+        let (room, ball) = (Room::new(model), Ball::of(model, frame, &bounds));
+        Ok(InverseKinematics { model, frame, options, bounds, ball, step, delta: vec![0.0; n], iterations: 0, room })
     }
 
     /// Positions that reach the goal, from a guess and, if that fails, from random ones. An iteration costs O(n).
@@ -183,7 +190,8 @@ impl<'m> InverseKinematics<'m> {
         // the guess, from which random starts begin
         room.next.copy_from_slice(theta);
         room.nearest.copy_from_slice(theta);
-        for start in 1..=self.options.starts {
+        let starts = if self.is_out_of_reach(goal) { OUTSIDE.min(self.options.starts) } else { self.options.starts };
+        for start in 1..=starts {
             theta.copy_from_slice(&room.next);
             if start > 1 {
                 self.bounds.randomize(theta, random);
@@ -199,7 +207,13 @@ impl<'m> InverseKinematics<'m> {
             }
         }
         theta.copy_from_slice(&room.nearest);
-        self.found(false, goal, theta, self.options.starts)
+        self.found(false, goal, theta, starts)
+    }
+
+    /// True if no lengths of the robot lead so far.
+    fn is_out_of_reach(&self, goal: &Goal) -> bool {
+        let outside = self.ball.zip(reach::position(*goal)).map(|(ball, p)| ball.outside(p));
+        outside.is_some_and(|outside| outside > self.options.distance + 1e-9)
     }
 
     fn found(&self, is_reached: bool, goal: &Goal, theta: &[f64], starts: usize) -> Found {

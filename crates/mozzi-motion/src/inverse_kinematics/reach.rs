@@ -124,7 +124,7 @@ fn shoulder(model: &Model, frame: FrameId, theta: &[f64]) -> Option<Vec3> {
     Some(point + w * s)
 }
 
-fn position(goal: Goal) -> Option<Vec3> {
+pub(super) fn position(goal: Goal) -> Option<Vec3> {
     match goal {
         Goal::Pose(T) => Some(T.p),
         Goal::Position(p) => Some(p),
