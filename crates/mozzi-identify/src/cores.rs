@@ -1,5 +1,6 @@
 //! Independent results, such as those of joints, on all cores.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
@@ -9,25 +10,34 @@ const SMALL: usize = 20_000;
 /// `of(0)`, `of(1)`, … `of(count − 1)`, in this order; `numbers` are read by all of them together. The results do not
 /// depend on the number of cores.
 pub fn each<T: Send>(count: usize, numbers: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let results: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
+    on_cores(count, numbers, &|k| {
+        if let Ok(mut place) = results[k].lock() {
+            *place = Some(of(k));
+        }
+    });
+    results.into_iter().filter_map(|place| place.into_inner().ok().flatten()).collect()
+}
+
+/// Does each of `count` jobs once; a panic of one is passed on.
+fn on_cores(count: usize, numbers: usize, job: &(dyn Fn(usize) + Sync)) {
     let cores = thread::available_parallelism().map_or(1, usize::from).min(count);
     if cores <= 1 || numbers < SMALL {
-        return (0..count).map(of).collect();
+        return (0..count).for_each(job);
     }
     let next = AtomicUsize::new(0);
-    let work = || -> Vec<(usize, T)> {
-        let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
-        taken.take_while(|&k| k < count).map(|k| (k, of(k))).collect()
-    };
-    let mut found: Vec<(usize, T)> = thread::scope(|scope| {
-        let others: Vec<_> = (1..cores).map(|_| scope.spawn(work)).collect();
-        let mut found = work();
-        for other in others {
-            found.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+    let work = || {
+        loop {
+            match next.fetch_add(1, Ordering::Relaxed) {
+                k if k < count => job(k),
+                _ => return,
+            }
         }
-        found
+    };
+    thread::scope(|scope| {
+        (1..cores).for_each(|_| drop(scope.spawn(work)));
+        work();
     });
-    found.sort_unstable_by_key(|(k, _)| *k);
-    found.into_iter().map(|(_, result)| result).collect()
 }
 
 #[cfg(test)]
