@@ -120,3 +120,16 @@ def test_what_is_wrong_is_said():
         cube.simulate(start, np.zeros(6), 1.0, 10, planes=[])
     with pytest.raises(ValueError, match="within its plane"):
         cube.simulate([1, 0, 0, 0, 0, 0, -1], np.zeros(6), 1.0, 10, contacts=["cube"])
+
+
+def test_one_contact_and_one_plane_need_no_list():
+    cube = mozzi.Model.from_urdf_string(CUBE, floating=True)
+    start = [1, 0, 0, 0, 0, 0, 0.1]
+
+    def fall(contacts, planes=None):
+        return cube.simulate(start, None, 0.3, 300, contacts=contacts, planes=planes).theta
+
+    listed = fall(["cube"], [{"pose": [1, 0, 0, 0, 0, 0, 0]}])
+    assert (fall("cube", {"pose": [1, 0, 0, 0, 0, 0, 0]}) == listed).all()
+    with pytest.raises(TypeError, match="contacts is True, expected a list of names or dictionaries"):
+        fall(True)

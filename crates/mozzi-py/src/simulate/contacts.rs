@@ -67,9 +67,14 @@ impl Fixed {
     }
 }
 
-/// A list of what an iterable gives, which can be read twice.
-pub fn listed<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    let entries = given.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+/// A list of what an iterable gives, which can be read twice; of one name or dictionary.
+pub fn listed<'py>(name: &str, given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let is_one = given.is_instance_of::<PyString>() || given.is_instance_of::<PyDict>();
+    let wrong = |_| PyTypeError::new_err(format!("{name} is {given}, expected a list of names or dictionaries"));
+    let entries = match is_one {
+        true => vec![given.clone()],
+        false => given.try_iter().map_err(wrong)?.collect::<PyResult<Vec<_>>>()?,
+    };
     Ok(PyList::new(given.py(), entries)?.into_any())
 }
 

@@ -232,8 +232,8 @@ impl PyModel {
         tables.into_iter().try_for_each(|table| table.spread::<f64>(&leading, 1))?;
         let start = [theta.slice()?, dtheta.slice()?];
         let model = &this.robot().model;
-        let [contacts, planes] = [contacts, planes].map(|given| given.map(contacts::listed).transpose());
-        let given = [contacts?, planes?];
+        let listed = |name, given: Given<'_, 'py>| given.map(|given| contacts::listed(name, given)).transpose();
+        let given = [listed("contacts", contacts)?, listed("planes", planes)?];
         let given = [given[0].as_ref(), given[1].as_ref()];
         if leading.is_empty() {
             if !sticking {
