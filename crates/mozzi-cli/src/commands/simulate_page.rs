@@ -121,6 +121,8 @@ fn roll_pitch_yaw(R: SO3) -> [f64; 3] {
 
 /// A drift above this part of the largest kinetic energy means that the step is too long.
 const COARSE: f64 = 0.1;
+/// A drift below this part of the energies' scale is no matter of the step.
+const SMALL: f64 = 1e-9;
 
 /// Some rows of a motion: t, θ, 𝒦, 𝒫, drift.
 pub fn rows(model: &Model, motion: &Trajectory, shown: usize) -> Vec<String> {
@@ -211,7 +213,8 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
         energy(end.applied_work)
     ));
     let drift = if account.largest_drift <= f64::EPSILON * scale { 0.0 } else { account.largest_drift };
-    let is_coarse = drift > COARSE * account.largest_kinetic_energy;
+    // a robot that stands still has no kinetic energy to compare with
+    let is_coarse = drift > COARSE * account.largest_kinetic_energy && drift > SMALL * scale;
     page.line(format!(
         "drift: energy error of the method, at most {} J; largest kinetic energy {} J{}",
         about(drift),
