@@ -61,14 +61,10 @@ fn event<'e, 'py: 'e>(
         return Err(PyTypeError::new_err(format!("{name} has an entry of type {found}, expected {expected}")));
     }
     let called = given.getattr("__name__").and_then(|name| name.extract::<String>()).unwrap_or_else(|_| name.into());
-    let call = move |t: f64, [theta, dtheta]: [&[f64]; 2]| {
-        let py = given.py();
-        let list = |x: &[f64]| array(py, &[x.len()], x.iter().copied());
-        given.call1((t, list(theta)?, list(dtheta)?))
-    };
     let word = name.to_string();
-    let answer = move |t: f64, state: [&[f64]; 2]| -> PyResult<(f64, bool)> {
-        let answer = call(t, state)?;
+    let answer = move |t: f64, [theta, dtheta]: [&[f64]; 2]| -> PyResult<(f64, bool)> {
+        let list = |x: &[f64]| array(given.py(), &[x.len()], x.iter().copied());
+        let answer = given.call1((t, list(theta)?, list(dtheta)?))?;
         if let Ok(holds) = answer.extract::<bool>() {
             return Ok((if holds { 1.0 } else { -1.0 }, true));
         }

@@ -11,8 +11,9 @@ use crate::compare::constants::{home, same_body};
 use mozzi::{Description, SE3, SO3, SpatialInertia, Sym3, Vec3};
 use std::collections::BTreeMap;
 
-/// The causes in the inertias of all bodies that move, and notes on bodies of equal inertia whose links share it in
-/// another way. `home_a` has the first robot's links with the causes of its joints accounted for.
+/// Compares the inertias of all bodies that move. A body whose inertia differs is a cause; a body of equal inertia
+/// that its links share in another way is a note. `home_a` has the first robot's links with the causes of its joints
+/// accounted for.
 pub fn causes(
     matched: &Matched,
     home_a: &BTreeMap<String, SE3>,
