@@ -67,7 +67,8 @@ usage: cargo xtask COMMAND
           the Python package, its wheel, some fuzzing, the no_std check, every example, the main job,
           the release build's kernels (none may call what is compiled without FMA)
           --torch                                     install PyTorch (5.5 GB), else its tests are skipped
-  check   formatting, clippy, documentation, licences, advisories, house rules, prose, length of README and DESIGN
+  check   formatting, clippy, documentation, licences, advisories, house rules, prose, length of README and DESIGN,
+          whether the pages' bundles are current
           --quick                                     only what compiles nothing, in seconds: before each commit
   docs    rewrite the generated pages of docs/ and README's tables; `test` and `check` compare them
           --readme                                    README's tables alone, from the pages that other commands write
@@ -281,6 +282,7 @@ fn check(workspace: &Workspace, which: Check) -> ExitCode {
     report.step("README's tables", || readme::check(workspace));
     report.step("claims", || claims::check(workspace));
     report.step("names in documents", || names::check(workspace));
+    report.step("page", || page::is_current(workspace));
     if which == Check::Everything {
         builds(workspace, &mut report);
     }

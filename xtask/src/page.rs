@@ -35,9 +35,8 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "c
 
 /// Rebuilds the bundles, and before them the wasm if there is a compiler for it.
 pub fn write(workspace: &Workspace) -> Outcome {
-    let wasm = wasm::write(workspace).and_then(|made| wasm::are_current(workspace).map(|()| made));
-    let built = wasm.and_then(|made| {
-        install(workspace)?;
+    let wasm = || wasm::write(workspace).and_then(|made| wasm::are_current(workspace).map(|()| made));
+    let built = install(workspace).and_then(|()| wasm()).and_then(|made| {
         PAGES.iter().try_for_each(|(name, bundle)| build(workspace, name, &workspace.path(bundle)))?;
         Ok(made)
     });

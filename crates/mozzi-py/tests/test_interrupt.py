@@ -19,8 +19,8 @@ HOME = np.zeros(6)
         lambda: mozzi.models.panda().derive("inverse_dynamics"),
         lambda: mozzi.excite(mozzi.models.ur5(), 60.0),
         lambda: mozzi.InverseKinematics(mozzi.models.ur5()).solve(HOME, position=np.full((9999, 3), 9.0)),
-        lambda: Line(mozzi.models.ur5(), HOME, HOME + 1).time_optimal(acceleration=1.0, intervals=3_000_000),
-        lambda: mozzi.compare("ur5", states=100_000),
+        lambda: Line(mozzi.models.ur5(), HOME, HOME + 1).time_optimal(acceleration=1.0, intervals=100_000),
+        lambda: mozzi.compare("ur5", states=3_000),
     ],
     ids=["derive", "excite", "inverse kinematics", "time-optimal", "compare"],
 )

@@ -133,12 +133,13 @@ def processes(marks, what):
 
 
 def kill_one_midway(marks, killed):
-    """The first worker that begins its third batch."""
-    while not killed:
+    """The first worker that begins its third batch. Without one it ends after five minutes."""
+    end = time.monotonic() + 300
+    while not killed and time.monotonic() < end:
         batches = processes(marks, "batch")
         killed += [process for process in set(batches) if batches.count(process) >= 3][:1]
         time.sleep(0.01)
-    os.kill(killed[0], signal.SIGKILL)
+    [os.kill(process, signal.SIGKILL) for process in killed]
 
 
 def test_every_row_once_though_a_worker_is_killed(cluster, example, tmp_path, monkeypatch):

@@ -4,7 +4,6 @@ use super::demands::{Demand, demands_of_a_motion};
 use super::limits::Limits;
 use super::path::Path;
 use super::profile::{Profile, Progress};
-use super::time_optimal::MOST;
 use crate::Error;
 use crate::error::{check, check_driven, check_open};
 use mozzi::Model;
@@ -13,6 +12,8 @@ use mozzi::Model;
 const CORRECTIONS: usize = 4;
 /// Largest excess over a limit, relative to it.
 const EXCESS: f64 = 1e-9;
+/// More samples are refused: each takes 600 bytes.
+const MOST: usize = 1_000_000;
 
 /// The profile with the shortest duration that keeps the limits at all times. With y the old duration over the new one,
 /// θ̇ grows as y, θ̈ as y², and τ = A y² + D y + c at each of N + 1 equal times, and where s̈ or θ″ jumps. A peak
@@ -29,7 +30,7 @@ pub fn stretched(
     samples: usize,
 ) -> Result<Profile, Error> {
     limits.check(model)?;
-    check((2..=MOST).contains(&samples), "the number of samples", samples, "2 to 10,000,000")?;
+    check((2..=MOST).contains(&samples), "the number of samples", samples, "2 to 1,000,000")?;
     check_driven(model, "a robot on a timed path")?;
     check_open(model, "a robot on a timed path")?;
     let places = places(profile, &path.knots(), samples);

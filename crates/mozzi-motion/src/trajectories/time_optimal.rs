@@ -26,8 +26,8 @@ const ROUNDS: usize = 4;
 const BETWEEN: usize = 15;
 const CORRECTIONS: usize = 3;
 
-/// More intervals or samples are refused.
-pub(super) const MOST: usize = 10_000_000;
+/// More intervals are refused: each takes 10 kB.
+const MOST: usize = 100_000;
 
 /// The fastest s(t) within the limits, at rest at both ends; N intervals of s, a few hundred. O(N n²). Torques include
 /// the model's own gravity and friction; in viscous friction √x is replaced by a tangent, which is never below it.
@@ -39,7 +39,7 @@ pub(super) const MOST: usize = 10_000_000;
 /// limit applies on some part of the path; [`mozzi::Error::BadArgument`], also for a path along which nothing moves.
 pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals: usize) -> Result<Profile, Error> {
     limits.check(model)?;
-    check((2..=MOST).contains(&intervals), "the number of intervals", intervals, "2 to 10,000,000")?;
+    check((2..=MOST).contains(&intervals), "the number of intervals", intervals, "2 to 100,000")?;
     check_driven(model, "a robot on a timed path")?;
     check_open(model, "a robot on a timed path")?;
     let s: Vec<f64> = (0..=intervals).map(|k| k as f64 / intervals as f64).collect();
