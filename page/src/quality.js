@@ -15,11 +15,11 @@ const CELLS = [0, 18, 12, 8];
 
 export class Quality {
   constructor(stage) {
-    Object.assign(this, { stage, level: 0, mean: 0, count: 0, isSoftware: SOFTWARE.test(rendererName()) });
+    Object.assign(this, { stage, level: 0, mean: 0, count: 0, software: softwareContext() });
   }
 
   get still() {
-    return this.isSoftware ? STILL : 1;
+    return this.software ? STILL : 1;
   }
 
   frame(interval) {
@@ -55,14 +55,16 @@ export class Quality {
   }
 }
 
-// What draws, such as "ANGLE (… SwiftShader …)"; empty without WebGL.
-function rendererName() {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  if (!gl) return "";
-  const names = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
-  gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return name;
+// The canvas and context of a processor that draws, whose start takes a quarter of a second; of graphics hardware the names alone are
+// asked, since smooth edges are chosen when a context is made.
+function softwareContext() {
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("webgl2", { alpha: true, stencil: false, antialias: false, preserveDrawingBuffer: true });
+  if (!context) return null;
+  const names = context.getExtension("WEBGL_debug_renderer_info");
+  if (SOFTWARE.test(context.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : context.RENDERER))) return { canvas, context };
+  context.getExtension("WEBGL_lose_context")?.loseContext();
+  return null;
 }
 
 // The geometry with all vertices of a cell of a grid made one; triangles within a cell go.

@@ -8,10 +8,10 @@ export const matrixOf = ({ R, p }) =>
   new THREE.Matrix4().set(R[0], R[1], R[2], p[0], R[3], R[4], R[5], p[1], R[6], R[7], R[8], p[2], 0, 0, 0, 1);
 
 export class Scene {
-  // `scale`: pixels along an edge for one of the screen.
-  constructor(host, robot, { antialias = true, scale = 1 } = {}) {
+  // `drawn`: a canvas with its context, if there is one; `scale`: pixels along an edge for one of the screen.
+  constructor(host, robot, { drawn = null, scale = 1 } = {}) {
     Object.assign(this, { host, scale });
-    this.renderer = new THREE.WebGLRenderer({ antialias, alpha: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true, ...drawn });
     this.renderer.shadowMap.enabled = true;
     host.append(this.renderer.domElement);
     this.world = new THREE.Scene();

@@ -32,7 +32,7 @@ export class Stage {
     this.robot = robot;
     this.overlays?.remove();
     if (this.scene) this.scene.setRobot(robot);
-    else this.scene = new Scene(this.host, robot, { antialias: !this.quality.isSoftware, scale: this.quality.still });
+    else this.scene = new Scene(this.host, robot, { drawn: this.quality.software, scale: this.quality.still });
     this.reach = this.reachOf(theta);
     this.addOverlays();
     this.skeleton = addSkeleton(robot, this.scene, this.reach, this.jointColour);
