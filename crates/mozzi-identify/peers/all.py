@@ -16,8 +16,8 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 CASES = [
-    ("Panda", "panda.csv", "panda_description/urdf/panda.urdf", "4", ["panda_finger_joint1", "panda_finger_joint2"]),
-    ("UR10", "ur10.csv", "ur_description/urdf/ur10_robot.urdf", "10", []),
+    ("Panda", "panda.csv", "panda_description/urdf/panda.urdf", "4", ["panda_finger_joint1", "panda_finger_joint2"], "fer_joint"),
+    ("UR10", "ur10.csv", "ur_description/urdf/ur10_robot.urdf", "10", [], None),
 ]
 
 
@@ -28,11 +28,13 @@ def main() -> None:
     parser.add_argument("--robots", default=os.environ.get("MOZZI_ROBOTS", ""), help="folder of example-robot-data")
     parser.add_argument("--sysid", action="store_true", help="also MuJoCo's sysid, which takes minutes")
     given = parser.parse_args()
-    for name, log, urdf, cutoff, locks in CASES:
+    for name, log, urdf, cutoff, locks, prefix in CASES:
         robot, log = str(Path(given.robots) / urdf), str(given.logs / log)
         print(f"\n{name}", flush=True)
         for torque in ("motor", "link"):
             fixed = [f"--lock={lock}=0" for lock in locks[:1]]
+            if prefix:  # the log's names of the robot's joints
+                fixed += ["--order", ",".join(f"{prefix}{k}" for k in range(1, 8))]
             options = [robot, log, "--fit", "70", "--cutoff", cutoff, "--torque", torque, "--json", *fixed]
             done = subprocess.run([given.mozzi, "identify", *options], capture_output=True, text=True)
             if done.returncode:

@@ -1,7 +1,7 @@
 //! The planar arm of Modern Robotics, section 8.1: equations (8.9) to (8.11).
 
 use crate::{embedded, formulas, of};
-use mozzi_symbolic::{Collect, Equal, Options, Symbols};
+use mozzi_symbolic::{Collect, Equal, Language, Options, Symbols};
 
 const BOOK: Options = Options { symbols: Symbols::ALL, equal: Equal::OfLink, collect: Collect::Shortest, names: false };
 
@@ -25,6 +25,20 @@ fn the_planar_arm_is_that_of_the_book() {
          − m₂L₁L₂ sin θ₂ (2θ̇₁θ̇₂ + θ̇₂²) + (m₁ + m₂)L₁g cos θ₁ + m₂L₂g cos(θ₁ + θ₂)\n\
          τ₂ = m₂(L₁L₂ cos θ₂ + L₂²)θ̈₁ + m₂L₂²θ̈₂ + m₂L₁L₂θ̇₁² sin θ₂ + m₂L₂g cos(θ₁ + θ₂)"
     );
+}
+
+#[test]
+fn lines_of_text_fit_a_page() {
+    let numbers = Options { symbols: Symbols::NONE, ..BOOK };
+    let robots =
+        [("two_link_planar", "tau", BOOK), ("ur5", "g", numbers), ("ur5", "M", numbers), ("panda", "g", numbers)];
+    for (robot, quantity, options) in robots {
+        let text = of(embedded(robot), quantity, &options).print(Language::Text);
+        let width = |line: &str| line.chars().filter(|c| !('\u{300}'..'\u{370}').contains(c)).count();
+        let long = text.lines().find(|line| width(line) > 80);
+        assert_eq!(long, None, "{robot}: {quantity}");
+        assert!(text.lines().any(|line| line.starts_with("    ")), "{robot}: {quantity} has a broken line");
+    }
 }
 
 #[test]

@@ -40,7 +40,7 @@ pub fn embedded(robot: &str) -> &'static str {
 
 /// The lines of a page without its legend, spaces made single.
 pub fn formulas(derivation: &Derivation) -> String {
-    let text = derivation.print(Language::Text);
+    let text = derivation.print(Language::Text).replace("\n    ", " "); // broken lines
     let formulas = text.split("\n\n").next().expect("formulas");
     let squeezed = |line: &str| line.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
     formulas.trim().lines().map(squeezed).collect::<Vec<_>>().join("\n")

@@ -1,7 +1,7 @@
 //! `mozzi explain`: the meaning of a diagnostic's code, with a bad and a good example.
 
 use crate::failure::{Failure, Result};
-use crate::text::{page_width, width};
+use crate::text::{page_width, wrapped};
 use clap::Args;
 use mozzi_urdf::{explain, mjcf, nearest_code, remedy, sdf, why};
 use std::collections::BTreeSet;
@@ -33,15 +33,15 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
                 _ => "sdf",
             });
             let full = format!("mozzi::{language}::{short}");
-            let mut page = format!("{full}\n\n{}", wrapped(text));
+            let mut page = format!("{full}\n\n{}", lines_of(text));
             if let Some(why) = why(&full) {
-                page += &format!("\n{}", wrapped(&format!("Why it matters: {why}")));
+                page += &format!("\n{}", lines_of(&format!("Why it matters: {why}")));
             }
             if let Some((severity, example)) = example(&full) {
                 page += &format!("\nSeverity: {severity}\n\n{example}");
             }
             if let Some(remedy) = remedy(asked) {
-                page += &format!("\n{}", wrapped(&format!("Remedy: {remedy}.")));
+                page += &format!("\n{}", lines_of(&format!("Remedy: {remedy}.")));
             }
             Ok(page)
         }
@@ -71,23 +71,7 @@ fn codes() -> impl Iterator<Item = &'static str> {
     mozzi_urdf::codes().chain(mjcf::codes()).chain(sdf::codes())
 }
 
-/// Wraps lines to the page; existing line breaks stay.
-fn wrapped(text: &str) -> String {
-    let mut page = String::new();
-    for paragraph in text.lines() {
-        let mut line = String::new();
-        for word in paragraph.split(' ') {
-            if !line.is_empty() && width(&line) + 1 + width(word) > page_width() {
-                page.push_str(&line);
-                page.push('\n');
-                line.clear();
-            } else if !line.is_empty() {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-        page.push_str(&line);
-        page.push('\n');
-    }
-    page
+/// The lines of a text, wrapped to the page.
+fn lines_of(text: &str) -> String {
+    text.lines().flat_map(|line| wrapped(line, page_width(), 0)).map(|line| line + "\n").collect()
 }

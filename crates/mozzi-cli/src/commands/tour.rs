@@ -46,7 +46,7 @@ fn robot(model: &Model, page: &mut Page) {
     page.title("1  a robot is a list of screws, and of masses (mozzi screws ur5)");
     let sentence = "Joint i at 1 rad/s moves the links beyond it with the twist S_i = (ω, v), at θ = 0 \
                     in base coordinates, angular first; v of the point at the base's origin:";
-    page.lines(&wrapped(sentence, page_width() - 4));
+    page.lines(&wrapped(sentence, page_width() - 4, 2));
     page.lines(&screws::axes(&lists, &lists.S));
 }
 

@@ -60,7 +60,7 @@ fn with_wrapped_end(rows: &[Vec<String>], begins: &[String], before: usize, room
     let mut found = Vec::new();
     for (row, begin) in rows.iter().zip(begins) {
         let text = row.get(columns - 1).map_or("", String::as_str);
-        for (k, part) in wrapped(text, room - before).iter().enumerate() {
+        for (k, part) in wrapped(text, room - before, 2).iter().enumerate() {
             let line = if k == 0 { pad(begin, before, 'l') } else { " ".repeat(before) } + part;
             found.push(line.trim_end().to_string());
         }

@@ -251,7 +251,7 @@ pub struct Page(String);
 impl Page {
     /// One more line; one that is wider than the page is wrapped.
     pub fn line(&mut self, line: impl AsRef<str>) -> &mut Self {
-        for part in wrapped(line.as_ref().trim_end(), page_width()) {
+        for part in wrapped(line.as_ref().trim_end(), page_width(), 2) {
             self.0.push_str(&part);
             self.0.push('\n');
         }

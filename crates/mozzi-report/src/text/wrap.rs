@@ -2,9 +2,9 @@
 
 use crate::text::width;
 
-/// A line in parts of at most `most` columns, broken at spaces; further parts are indented by two more columns. A word
-/// that is wider stays whole.
-pub fn wrapped(line: &str, most: usize) -> Vec<String> {
+/// A line in parts of at most `most` columns, broken at spaces; further parts are indented by `hang` more columns. A
+/// word that is wider stays whole.
+pub fn wrapped(line: &str, most: usize, hang: usize) -> Vec<String> {
     if width(line) <= most {
         return vec![line.to_string()];
     }
@@ -15,7 +15,7 @@ pub fn wrapped(line: &str, most: usize) -> Vec<String> {
     for word in line[indent..].split(' ') {
         if !is_empty && width(&part) + 1 + width(word) > most {
             parts.push(part.trim_end().to_string());
-            part = " ".repeat(indent + 2);
+            part = " ".repeat(indent + hang);
             is_empty = true;
         }
         if !is_empty {
@@ -39,9 +39,9 @@ mod tests {
 
     #[test]
     fn lines_break_at_spaces_and_keep_their_indentation() {
-        assert_eq!(wrapped("  one two three", 20), ["  one two three"]);
-        assert_eq!(wrapped("  one two three four", 13), ["  one two", "    three", "    four"]);
-        assert_eq!(wrapped("unbreakable,line", 5), ["unbreakable,line"]);
-        assert_eq!(wrapped("θ̇θ̇θ̇ θ̇", 5), ["θ̇θ̇θ̇ θ̇"]);
+        assert_eq!(wrapped("  one two three", 20, 2), ["  one two three"]);
+        assert_eq!(wrapped("  one two three four", 13, 2), ["  one two", "    three", "    four"]);
+        assert_eq!(wrapped("unbreakable,line", 5, 2), ["unbreakable,line"]);
+        assert_eq!(wrapped("θ̇θ̇θ̇ θ̇", 5, 2), ["θ̇θ̇θ̇ θ̇"]);
     }
 }

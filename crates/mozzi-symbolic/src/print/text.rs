@@ -94,8 +94,46 @@ impl Style for Text {
     }
 }
 
-/// A line of text may be this long.
-const WIDE: usize = 110;
+/// Columns of a line of text.
+const WIDE: usize = 80;
+
+/// Columns that a text takes: the dots above letters take none.
+fn width(text: &str) -> usize {
+    text.chars().filter(|c| !('\u{300}'..'\u{370}').contains(c)).count()
+}
+
+/// Lines of at most [`WIDE`] columns, broken before a sign or after a comma; further parts are indented.
+fn page_of(lines: &[String]) -> String {
+    let mut page = String::new();
+    for line in lines {
+        let mut part = String::new();
+        for piece in pieces(line) {
+            if !part.trim().is_empty() && width(&part) + width(piece) > WIDE {
+                page += part.trim_end();
+                part = "\n   ".into();
+                part += if piece.starts_with(' ') { "" } else { " " };
+            }
+            part += piece;
+        }
+        page += part.trim_end();
+        page.push('\n');
+    }
+    page
+}
+
+/// The parts of a line between which it may be broken.
+fn pieces(line: &str) -> impl Iterator<Item = &str> {
+    let mut rest = line;
+    std::iter::from_fn(move || {
+        let after_first = rest.chars().next()?.len_utf8();
+        let signs = [" + ", " − "].map(|sign| rest[after_first..].find(sign));
+        let comma = rest.find(", ").map(|at| at + 2 - after_first);
+        let end = signs.into_iter().chain([comma]).flatten().min().map_or(rest.len(), |at| at + after_first);
+        let (piece, tail) = rest.split_at(end);
+        rest = tail;
+        Some(piece)
+    })
+}
 
 pub(crate) fn page(derivation: &Derivation) -> String {
     let style = Text { has_fractions: derivation.has_fractions };
@@ -117,7 +155,7 @@ pub(crate) fn page(derivation: &Derivation) -> String {
         lines.push(format!("{name} = {}", minus(&printer.expression(denominator))));
     }
     lines.extend(legend(&derivation.legend, &derivation.angles, &style));
-    lines.join("\n") + "\n"
+    page_of(&lines)
 }
 
 /// The recursion, part by part.
@@ -133,12 +171,12 @@ pub(crate) fn steps(steps: &Steps) -> String {
         let inline =
             formula.entries.iter().map(|entry| minus(&printer.expression(entry))).collect::<Vec<_>>().join(", ");
         match formula.shape[..] {
-            [6] if inline.chars().count() < WIDE => lines.push(format!("{} = ({inline})", step.text)),
+            [6] if width(&inline) + width(&step.text) + 5 <= WIDE => lines.push(format!("{} = ({inline})", step.text)),
             _ => lines.extend(equation(&printer, formula, &step.text, &step.text, None)),
         }
     }
     lines.extend(legend(&steps.legend, &[], &style));
-    lines.join("\n").trim_start().to_string() + "\n"
+    page_of(&lines).trim_start().to_string()
 }
 
 /// The symbol of a denominator.
@@ -186,15 +224,14 @@ fn matrix(formula: &Formula, written: &[String]) -> Option<Vec<String>> {
         [_, columns] => columns.max(1),
         _ => return None,
     };
-    let length = |text: &String| text.chars().filter(|c| !('\u{300}'..'\u{370}').contains(c)).count();
-    let widths: Vec<usize> =
-        (0..columns).map(|j| written.iter().skip(j).step_by(columns).map(length).max().unwrap_or(0)).collect();
+    let widest = |j| written.iter().skip(j).step_by(columns).map(|text| width(text)).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(widest).collect();
     if widths.iter().sum::<usize>() + 3 * columns + 4 > WIDE {
         return None;
     }
-    let pad = |text: &String, width: usize| format!("{text}{}", " ".repeat(width - length(text)));
+    let pad = |text: &String, to: usize| format!("{text}{}", " ".repeat(to - width(text)));
     let row = |row: &[String]| {
-        let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, &width)| pad(cell, width)).collect();
+        let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, &to)| pad(cell, to)).collect();
         format!("  [ {} ]", cells.join("   "))
     };
     Some(written.chunks(columns).map(row).collect())

@@ -50,7 +50,7 @@ fn with_base_twist<S: Scalar + From<C0>, C0: Scalar>(
     let G = model.base_inertia.map(S::from);
     (G_c[0], B[0]) = (G, CoriolisFactor::new(G, V[0], G * V[0]));
     for (i, link) in model.outward::<S>() {
-        V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j];
+        V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j]; // (8.51)
         let (A, G) = (link.A(), link.G());
         let moved = if link.has_one_axis() { (V[i].ad() * A).rate() } else { AxisRate::zero() };
         by_rates[i] = ByRates { r: moved, s: A.a * half };

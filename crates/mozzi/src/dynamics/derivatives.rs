@@ -182,7 +182,7 @@ pub(super) fn joint_forces<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, wor
         tau[..6].copy_from_slice(&F[0].to_array());
     }
     for (i, link) in model.outward::<S>() {
-        tau[link.j] += link.A() * F[i];
+        tau[link.j] += link.A() * F[i]; // (8.54)
     }
 }
 }

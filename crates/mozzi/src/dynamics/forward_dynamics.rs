@@ -158,7 +158,7 @@ fn accelerations<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, workspace: &m
     for (i, link) in model.outward::<S>() {
         let dV_i = T[i].Ad() * dV[link.parent] + c[i];
         ddtheta[link.j] = u[link.j] - dV_i.dot(U[i]);                                 // θ̈ = u − Uᵀ𝒱̇
-        dV[i] = dV_i + link.A() * ddtheta[link.j];                                    // 𝒱̇ += Aθ̈
+        dV[i] = dV_i + link.A() * ddtheta[link.j];                                    // 𝒱̇ += Aθ̈ (8.52)
     }
 }
 

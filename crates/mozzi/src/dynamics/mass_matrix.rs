@@ -44,11 +44,11 @@ pub(crate) fn fill_mass_matrix<S: Scalar + From<C>, C: Scalar>(
     let (mut M, T, G) = (Square::new(model.n(), M), &workspace.recursion.T[..slots], &workspace.composite.G[..slots]);
     for (j, joint) in model.outward::<S>() {
         let mut F = G[j] * joint.A(); // moves all beyond joint j
-        M[(joint.j, joint.j)] += joint.A() * F;
+        M[(joint.j, joint.j)] += joint.A() * F; // (8.54)
         let mut link = j;
         for (i, below) in model.to_base::<S>(joint.parent) {
-            F = T[link].Ad().transpose() * F; // seen from its parent
-            M.add_pair(below.j, joint.j, [below.A() * F; 2]);
+            F = T[link].Ad().transpose() * F; // seen from its parent: (8.53)
+            M.add_pair(below.j, joint.j, [below.A() * F; 2]); // (8.54)
             link = i;
         }
         if model.is_floating() {

@@ -59,7 +59,7 @@ pub fn regressor<S: Scalar + From<C>, C: Scalar>(
             let mut F = Ad.transpose() * F_b;
             for (i, link) in model.to_base::<S>(slot) {
                 Y[link.j * p + column] += link.A() * F;             // (8.54)
-                F = T[i].Ad().transpose() * F;
+                F = T[i].Ad().transpose() * F;                      // (8.53)
             }
             if model.is_floating() {
                 for (row, entry) in F.to_array().into_iter().enumerate() {

@@ -9,7 +9,7 @@ pass! {
 pub(crate) fn joint_transforms<S: Scalar + From<C>, C: Scalar>(model: &Model<C>, theta: &[S], workspace: &mut Workspace<S>) {
     joint_sines(model, theta, workspace);
     let Workspace { recursion: Recursion { T, sin_cos, .. }, .. } = workspace;
-    for (i, link) in model.outward::<S>() { T[i] = link.transform_with(sin_cos[i], theta); }
+    for (i, link) in model.outward::<S>() { T[i] = link.transform_with(sin_cos[i], theta); } // (8.50)
 }
 }
 

@@ -15,7 +15,7 @@ pub(crate) fn link_twists<S: Scalar + From<C>, C: Scalar>(
     let Workspace { recursion: Recursion { T, V, .. }, .. } = workspace;
     V[0] = base_twist(model, theta, dtheta, V_s);
     for (i, link) in model.outward::<S>() {
-        V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j];
+        V[i] = T[i].Ad() * V[link.parent] + link.A() * dtheta[link.j]; // (8.51)
     }
 }
 }
