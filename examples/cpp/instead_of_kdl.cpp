@@ -7,11 +7,11 @@
 //   solver.CartToJnt(q, qd, qdd, f_ext, torques)               workspace.inverse_dynamics(θ, θ̇, θ̈, τ, environment)
 //   ChainDynParam::JntToMass / JntToGravity / JntToCoriolis    mass_matrix / gravity_forces / velocity_product
 //   ChainFkSolverPos_recursive::JntToCart                      forward_kinematics
-//   ChainJntToJacSolver::JntToJac                              space_jacobian, body_jacobian
+//   ChainJntToJacSolver::JntToJac                              body_jacobian, turned into the base's axes
 //
 // KDL's f_ext are wrenches (force, torque) that act on the segments, in their frames; mozzi's are (m, f), what the robot
 // applies to its environment, in the frames: exchange the halves and change the sign. KDL's Jacobian has linear rows
-// first. docs/cpp.md has the whole table.
+// first, is of the tip's origin, and in the base's axes. docs/cpp.md has the whole table.
 #include <mozzi/mozzi.hpp>
 
 #include <cmath>

@@ -106,13 +106,13 @@ impl Prepared {
         }
         // SAFETY: as above.
         let table = |numbers: *const f64, width: usize, name| unsafe {
-            if numbers.is_null() { Ok(None) } else { slice(numbers, states * width, name).map(Some) }
+            if numbers.is_null() { Ok(None) } else { finite_rows(numbers, states, width, name).map(Some) }
         };
         // SAFETY: as above.
         let wrenches = unsafe { slice(given.wrenches, given.wrench_count, "environment.wrenches")? };
         let wrench = |wrench: &BatchWrench| {
             // SAFETY: as above.
-            let table = unsafe { slice(wrench.F, states * 6, "a wrench of the environment")? };
+            let table = unsafe { finite_rows(wrench.F, states, 6, "a wrench of the environment")? };
             Ok((robot.frame(wrench.frame)?, table))
         };
         let wrenches: Vec<(FrameId, &[f64])> = wrenches.iter().map(wrench).collect::<Outcome<_>>()?;
@@ -121,6 +121,25 @@ impl Prepared {
         let gravity = table(given.gravity_of_each, 3, "environment.gravity_of_each")?;
         call(&BatchEnvironment { environment: own, wrenches: &wrenches, gravity, parameters })
     }
+}
+
+/// The numbers of this many rows.
+fn count(states: usize, width: usize) -> Outcome<usize> {
+    match states.checked_mul(width) {
+        Some(count) => Ok(count),
+        None => refuse!(Status::INVALID_ARGUMENT, "states is {states}, expected as many as fit in memory"),
+    }
+}
+
+/// Rows of finite numbers.
+///
+/// # Safety
+/// As [`slice`].
+unsafe fn finite_rows<'a>(numbers: *const f64, states: usize, width: usize, name: &str) -> Outcome<&'a [f64]> {
+    // SAFETY: the caller's promise.
+    let rows = unsafe { slice(numbers, count(states, width)?, name)? };
+    check_finite(rows, name)?;
+    Ok(rows)
 }
 
 /// A batch of a model, changed by `with`.
@@ -215,7 +234,7 @@ pub unsafe extern "C" fn mozzi_batch_compute(
         for ((table, declared), width) in
             slice(inputs, input_count, "inputs")?.iter().zip(declaration.inputs).zip(widths)
         {
-            crate::border::check_length(declared.name, table.length, states * width)?;
+            crate::border::check_length(declared.name, table.length, count(states, width)?)?;
             let numbers = slice(table.data, table.length, declared.name)?;
             check_finite(numbers, declared.name)?;
             given.push(numbers);
@@ -226,7 +245,7 @@ pub unsafe extern "C" fn mozzi_batch_compute(
         for ((table, declared), width) in
             slice(outputs, output_count, "outputs")?.iter().zip(declaration.outputs).zip(widths)
         {
-            crate::border::check_length(declared.name, table.length, states * width)?;
+            crate::border::check_length(declared.name, table.length, count(states, width)?)?;
             let place = (table.data.addr(), table.data.addr() + 8 * table.length);
             if table.length > 0 && taken.iter().any(|other| place.0 < other.1 && other.0 < place.1) {
                 let expected = "arrays of their own for the outputs of a batch";
@@ -251,6 +270,9 @@ fn span(numbers: &[f64]) -> (usize, usize) {
     (first, first + 8 * numbers.len())
 }
 
+/// `MOZZI_AUTOMATIC`.
+pub const AUTOMATIC: i32 = 6;
+
 /// The method of a number in C.
 pub fn method(number: i32, tolerance: f64) -> Outcome<Method> {
     match number {
@@ -259,6 +281,8 @@ pub fn method(number: i32, tolerance: f64) -> Outcome<Method> {
         2 => Ok(Method::SemiImplicitEuler),
         3 => Ok(Method::DormandPrince { tolerance }),
         4 => Ok(Method::Midpoint),
+        5 => Ok(Method::MoreauJean),
+        AUTOMATIC => Ok(Method::Automatic),
         other => refuse!(Status::INVALID_ARGUMENT, "the method is {other}, expected one of MOZZI_RUNGE_KUTTA_4, …"),
     }
 }
@@ -287,9 +311,9 @@ pub unsafe extern "C" fn mozzi_batch_simulate(
         if steps == 0 {
             return refuse!(Status::INVALID_ARGUMENT, "steps is 0, expected at least 1");
         }
-        let theta = slice_mut(theta, states * nq, "theta")?;
-        let dtheta = slice_mut(dtheta, states * n, "dtheta")?;
-        let tau = slice(tau, states * n, "tau")?;
+        let theta = slice_mut(theta, count(states, nq)?, "theta")?;
+        let dtheta = slice_mut(dtheta, count(states, n)?, "dtheta")?;
+        let tau = slice(tau, count(states, n)?, "tau")?;
         for (numbers, name) in [(&*theta, "theta"), (&*dtheta, "dtheta"), (tau, "tau")] {
             check_finite(numbers, name)?;
         }

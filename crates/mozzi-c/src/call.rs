@@ -227,7 +227,7 @@ unsafe fn checked<const I: usize, const O: usize>(
 
     for (numbers, input) in state.iter().zip(declaration.inputs) {
         match input.dim {
-            Dim::Nq => robot.check_theta(numbers)?,
+            Dim::Nq => robot.check_theta(numbers, "theta")?,
             _ => check_finite(numbers, input.name)?,
         }
     }

@@ -32,8 +32,9 @@ unsafe fn edit(
 pub unsafe fn pose(T: *const f64, name: &str) -> Outcome<SE3> {
     // SAFETY: the caller's promise.
     let T = unsafe { slice(T, 16, name)? };
+    check_finite(T, name)?;
     let rows = std::array::from_fn(|row| std::array::from_fn(|column| T[4 * row + column]));
-    SE3::from_matrix(rows).map_err(|error| failure(Status::INVALID_ARGUMENT, format_args!("{name}: {error}")))
+    SE3::from_rounded_matrix(rows).map_err(|error| failure(Status::INVALID_ARGUMENT, format_args!("{name}: {error}")))
 }
 
 fn of_constraints(error: &ConstraintsError) -> Status {
@@ -79,6 +80,7 @@ pub unsafe extern "C" fn mozzi_model_with_locked_joints(
     guard(|| unsafe {
         edit(model, edited, |robot| {
             let (names, positions) = (texts(joints, count, "joints")?, slice(positions, count, "positions")?);
+            check_finite(positions, "positions")?;
             let locked: Vec<(&str, f64)> = names.into_iter().zip(positions.iter().copied()).collect();
             Ok(robot.model.with_locked_joints(&locked))
         })
@@ -134,6 +136,7 @@ pub unsafe extern "C" fn mozzi_model_with_gravity(
     guard(|| unsafe {
         edit(model, edited, |robot| {
             let g = slice(gravity, 3, "gravity")?;
+            check_finite(g, "gravity")?;
             Ok(robot.model.with_gravity([g[0], g[1], g[2]]))
         })
     })
@@ -306,7 +309,7 @@ pub unsafe extern "C" fn mozzi_assemble_velocities(
     guard(|| unsafe {
         let robot = borrow(model)?;
         let (theta, guess) = (slice(theta, robot.model.nq(), "theta")?, slice(guess, robot.model.n(), "guess")?);
-        robot.check_theta(theta)?;
+        robot.check_theta(theta, "theta")?;
         check_finite(guess, "guess")?;
         let hold = texts(hold, hold_count, "hold")?;
         assembled(robot.model.assemble_velocities(theta, guess, &hold), dtheta, "dtheta")

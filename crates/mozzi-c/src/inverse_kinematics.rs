@@ -1,6 +1,6 @@
 //! Inverse kinematics of one frame.
 
-use crate::border::{copy_out, put_if_wanted, slice};
+use crate::border::{check_finite, copy_out, put_if_wanted, slice};
 use crate::edits::pose;
 use crate::handle::{Handle, borrow, check_pointer, clear, free, kind, put};
 use crate::robot::{Frame, ModelHandle, Robot};
@@ -126,12 +126,14 @@ unsafe fn goal(kind: i32, numbers: *const f64) -> Outcome<Goal> {
             0 => Ok(Goal::Pose(pose(numbers, "goal")?)),
             1 => {
                 let p = slice(numbers, 3, "goal")?;
+                check_finite(p, "goal")?;
                 Ok(Goal::Position(Vec3([p[0], p[1], p[2]])))
             }
             2 => {
                 let R = slice(numbers, 9, "goal")?;
+                check_finite(R, "goal")?;
                 let rows = std::array::from_fn(|row| std::array::from_fn(|column| R[3 * row + column]));
-                match SO3::from_matrix(Mat3::from_rows(rows)) {
+                match SO3::from_rounded_matrix(Mat3::from_rows(rows)) {
                     Ok(R) => Ok(Goal::Orientation(R)),
                     Err(error) => refuse!(Status::INVALID_ARGUMENT, "goal: {error}"),
                 }
@@ -172,12 +174,12 @@ pub unsafe extern "C" fn mozzi_inverse_kinematics_solve(
         let _mark = Mark(is_busy);
         let (nq, goal) = (robot.model.nq(), self::goal(kind, goal)?);
         let guess = slice(guess, nq, "guess")?;
-        robot.check_theta(guess)?;
+        robot.check_theta(guess, "guess")?;
         let secondary = match near.is_null() {
             true => Secondary::None,
             false => {
                 let near = slice(near, nq, "near")?;
-                robot.check_theta(near)?;
+                robot.check_theta(near, "near_theta")?;
                 Secondary::Near(near)
             }
         };
@@ -185,20 +187,28 @@ pub unsafe extern "C" fn mozzi_inverse_kinematics_solve(
         let Memory { solver, theta: own } = &mut *memory.get();
         own.copy_from_slice(guess);
         let found = solver.search(goal, &secondary, own).map_err(|error| of_motion(&error))?;
-        let none = f64::NAN; // the goal leaves it free
-        if !found.is_reached {
-            let Residual { angle, distance } = found.residual;
-            let (angle, distance) = (angle.unwrap_or(0.0), distance.unwrap_or(0.0));
-            let searched = format_args!("{} starts, {} iterations in all", found.starts, found.iterations);
-            return refuse!(
-                Status::NOT_REACHED,
-                "the goal is not reached: the best of {searched}, is {angle:.2e} rad and {distance:.2e} m away"
-            );
-        }
         copy_out(own, theta, "theta")?;
-        let (angle, distance) = (found.residual.angle.unwrap_or(none), found.residual.distance.unwrap_or(none));
-        let written = CSolution { angle, distance, starts: found.starts, iterations: found.iterations };
-        put_if_wanted(written, solution, "solution")
+        let Residual { angle, distance } = found.residual;
+        let none = f64::NAN; // the goal leaves it free
+        let written = CSolution {
+            angle: angle.unwrap_or(none),
+            distance: distance.unwrap_or(none),
+            starts: found.starts,
+            iterations: found.iterations,
+        };
+        put_if_wanted(written, solution, "solution")?;
+        if found.is_reached {
+            return Ok(());
+        }
+        let searched = format_args!("{} starts, {} iterations in all", found.starts, found.iterations);
+        let begin = format_args!("the goal is not reached: the best of {searched}, is");
+        match (angle, distance) {
+            (Some(angle), Some(distance)) => {
+                refuse!(Status::NOT_REACHED, "{begin} {angle:.2e} rad and {distance:.2e} m away")
+            }
+            (Some(angle), None) => refuse!(Status::NOT_REACHED, "{begin} {angle:.2e} rad away"),
+            (None, distance) => refuse!(Status::NOT_REACHED, "{begin} {:.2e} m away", distance.unwrap_or(none)),
+        }
     })
 }
 

@@ -204,3 +204,20 @@ pub unsafe extern "C" fn mozzi_report_length(name: *const c_char, found: usize, 
         refuse!(Status::WRONG_LENGTH, "{name} has {found} entries, expected {expected}")
     })
 }
+
+/// Reports numbers that do not lie next to each other.
+///
+/// # Safety
+/// The name is null or a text that ends with a NUL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn mozzi_report_gaps(name: *const c_char) -> Status {
+    guard(|| {
+        // SAFETY: the caller's promise.
+        let name = unsafe { text(name, "name")? };
+        let expected = "numbers next to each other: copy them into a vector";
+        refuse!(
+            Status::WRONG_LENGTH,
+            "{name} has gaps between its numbers, such as a row of a matrix by columns has; expected {expected}"
+        )
+    })
+}

@@ -124,14 +124,17 @@ impl Robot {
         if frame >> 32 == u64::from(self.serial) && place < self.frames.len() {
             return Ok(self.frames[place]);
         }
-        let why = "it was found in another model, or never";
+        let why = match frame {
+            0 => "it is 0; expected one that mozzi_model_frame or mozzi_model_end_effector gives",
+            _ => "it was found in another model, or never",
+        };
         refuse!(Status::FOREIGN, "the frame is not of '{}': {why}", self.model.description().name)
     }
 
     /// Checks θ: finite numbers, unit quaternions.
     #[inline(always)]
-    pub fn check_theta(&self, theta: &[f64]) -> Outcome {
-        crate::border::check_finite(theta, "theta")?;
+    pub fn check_theta(&self, theta: &[f64], name: &str) -> Outcome {
+        crate::border::check_finite(theta, name)?;
         if self.has_quaternions {
             self.model.check_configuration(theta).map_err(|error| of_model(&error))?;
         }

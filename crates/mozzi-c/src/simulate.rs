@@ -1,6 +1,6 @@
 //! A simulation of one robot: torques come from a callback, rows go to one.
 
-use crate::batch::method;
+use crate::batch::{AUTOMATIC, method};
 use crate::border::{check_finite, slice};
 use crate::handle::{borrow, check_pointer};
 use crate::program::ProgramHandle;
@@ -136,7 +136,7 @@ impl Recorder for Caller<'_> {
     }
 }
 
-/// Options that are Runge-Kutta 4, every row, limits reported.
+/// Options that are the automatic method, every row, limits reported.
 ///
 /// # Safety
 /// See mozzi.h.
@@ -153,7 +153,7 @@ pub unsafe extern "C" fn mozzi_simulation_defaults(
             duration,
             steps,
             record_every: 1,
-            method: 0,
+            method: AUTOMATIC,
             joint_limits: 1,
             tolerance: 1e-9,
             slip_speed: 0.0,
@@ -191,7 +191,7 @@ pub unsafe extern "C" fn mozzi_simulate(
         check_pointer(options, "options")?;
         let options = (*options).read()?;
         let (theta, dtheta) = (slice(theta, robot.model.nq(), "theta")?, slice(dtheta, robot.model.n(), "dtheta")?);
-        robot.check_theta(theta)?;
+        robot.check_theta(theta, "theta")?;
         check_finite(dtheta, "dtheta")?;
         let failed = Cell::new(false);
         let forward_dynamics = compiled.and_then(|program| program.compiled.simulator());

@@ -82,7 +82,7 @@ pub unsafe extern "C" fn mozzi_integrate(
     guard(|| unsafe {
         let robot = borrow(model)?;
         let dtheta = slice(dtheta, robot.model.n(), "dtheta")?;
-        robot.check_theta(slice(theta.cast_const(), robot.model.nq(), "theta")?)?;
+        robot.check_theta(slice(theta.cast_const(), robot.model.nq(), "theta")?, "theta")?;
         check_finite(dtheta, "dtheta")?;
         check_finite(&[h], "h")?;
         check_apart("theta", (theta.cast_const(), robot.model.nq()), "dtheta", dtheta)?;
@@ -107,8 +107,8 @@ pub unsafe extern "C" fn mozzi_difference(
         let robot = borrow(model)?;
         let nq = robot.model.nq();
         let (theta0, theta1) = (slice(theta0, nq, "theta0")?, slice(theta1, nq, "theta1")?);
-        robot.check_theta(theta0)?;
-        robot.check_theta(theta1)?;
+        robot.check_theta(theta0, "theta0")?;
+        robot.check_theta(theta1, "theta1")?;
         let output = (difference.cast_const(), robot.model.n());
         check_apart("difference", output, "theta0", theta0)?;
         check_apart("difference", output, "theta1", theta1)?;

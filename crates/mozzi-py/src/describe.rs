@@ -1,6 +1,5 @@
 //! Converts a robot's description to plain tuples, which Python can pickle, and back.
 
-use mozzi::lie::InvalidRotation;
 use mozzi::model::Base;
 use mozzi::model::description::{
     self, BaseState, Description, FreeJoint, Gear, Joint, JointKind, Limits, Link, Mimic, NamedFrame, NamedState, Rotor,
@@ -146,31 +145,12 @@ pub fn from_state(
     }
 }
 
-/// The numbers of a rotation matrix may be rounded by this: float32, printed digits, `TestIfSO3` of Modern Robotics.
-const ROUNDED: f64 = 1e-3;
-
-/// A rotation; a matrix of rounded numbers is replaced by the nearest one.
-///
-/// # Errors
-/// If the matrix is no rotation.
-pub fn rotation(R: Mat3) -> Result<SO3, InvalidRotation> {
-    SO3::from_matrix(R).or_else(|error| match SO3::nearest(R) {
-        Ok((nearest, distance)) if distance < ROUNDED => Ok(nearest),
-        _ => Err(InvalidRotation { tolerance: ROUNDED, ..error }),
-    })
-}
-
-/// A configuration, its rotation as by [`rotation`].
+/// A configuration, whose rotation may have rounded numbers.
 ///
 /// # Errors
 /// `ValueError` for an invalid configuration.
 pub fn pose(T: Pose) -> PyResult<SE3> {
-    if T[3] != [0.0, 0.0, 0.0, 1.0] {
-        return SE3::from_matrix(T).map_err(refused);
-    }
-    let row = |i: usize| [T[i][0], T[i][1], T[i][2]];
-    let R = rotation(Mat3::from_rows([row(0), row(1), row(2)])).map_err(refused)?;
-    Ok(SE3::new(R, Vec3([T[0][3], T[1][3], T[2][3]])))
+    SE3::from_rounded_matrix(T).map_err(refused)
 }
 
 pub fn refused(error: impl std::fmt::Display) -> PyErr {

@@ -2,7 +2,7 @@
 //! package does.
 
 use crate::array::{Numbers, shown, wrong_shape};
-use crate::describe::{pose, refused, rotation};
+use crate::describe::{pose, refused};
 use crate::failure::{of_model, of_motion};
 use crate::model::{PyModel, array};
 use crate::motion::Instants;
@@ -45,7 +45,7 @@ fn exp3<'py>(py: Python<'py>, so3mat: Given<'_, 'py>) -> Found<'py> {
 
 #[pyfunction]
 fn log3<'py>(py: Python<'py>, R: Given<'_, 'py>) -> Found<'py> {
-    let R = rotation(Mat3::from_rows(Numbers::matrix("R", R, "(3, 3)")?)).map_err(refused)?;
+    let R = SO3::from_rounded_matrix(Mat3::from_rows(Numbers::matrix("R", R, "(3, 3)")?)).map_err(refused)?;
     let [x, y, z, _] = hat(logarithm(SE3::new(R, Vec3::zero())));
     matrix(py, [x, y, z].map(|[a, b, c, _]| [a, b, c]))
 }

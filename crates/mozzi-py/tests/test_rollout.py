@@ -96,10 +96,10 @@ def test_what_is_refused(ur5, random):
         for start in (theta, theta[0]):
             with pytest.raises(ValueError, match="the step"):
                 ur5.rollout(start, dtheta[0], tau[0], step)
-    with pytest.raises(ValueError, match="the method"):
-        ur5.rollout(theta, dtheta, tau, 0.01, "dopri")
-    with pytest.raises(ValueError, match="the method"):
-        ur5.rollout(theta[0], dtheta[0], tau[0], 0.01, "dopri")
+    expected = "'rk4', 'semi-implicit-euler', 'euler' or 'midpoint'"
+    for method in ("dopri", "auto", "moreau"):
+        with pytest.raises(ValueError, match=f"method is '{method}', expected {expected}"):
+            ur5.rollout(theta, dtheta, tau, 0.01, method)
     with pytest.raises(ValueError, match="expected 'rk4'"):
         ur5.rollout(theta, dtheta, tau, 0.01, "heun")
     tau[1, 3, 2] = 1e300

@@ -6,7 +6,9 @@
  * to its environment. θ has nq entries, θ̇, θ̈ and τ have n. See CONVENTIONS.md.
  *
  * Statuses. A function returns a mozzi_status: 0, or the reason why it failed; mozzi_last_error() has the names and the
- * numbers. Results are written if the status is 0 only, except after MOZZI_SINGULAR, which fills the outputs with NaN.
+ * numbers. Results are written if the status is 0 only, except after MOZZI_SINGULAR, which fills the outputs with NaN,
+ * MOZZI_NOT_REACHED, which leaves the nearest positions, and a failed mozzi_batch_simulate, which leaves states that are
+ * partly advanced.
  *
  * Memory. mozzi_…_new and the like write a handle that mozzi_…_free frees; a handle keeps what it needs, so that the
  * order of freeing is free. Freeing NULL does nothing. Use of a freed handle is undefined, as in all of C.
@@ -71,6 +73,8 @@ const char *mozzi_last_error(void);
 /* Stores the text "NAME has FOUND entries, expected EXPECTED" and returns MOZZI_WRONG_LENGTH: for wrappers in other
  * languages that know lengths. */
 mozzi_status mozzi_report_length(const char *name, size_t found, size_t expected);
+/* As what fails a vector whose numbers do not lie next to each other, likewise. */
+mozzi_status mozzi_report_gaps(const char *name);
 
 /* ------------------------------------------------------------------------------------------------- handles */
 
@@ -117,7 +121,7 @@ typedef struct mozzi_load_options {
 } mozzi_load_options;
 
 /* Each writes a model, and, unless `diagnostics` is NULL, what is wrong or odd about the file, of a refused one, too.
- * `options` may be NULL. URDF, xacro and MJCF are told apart by their content. */
+ * `options` may be NULL. URDF, xacro, MJCF and SDFormat are told apart by their content. */
 
 /* A file, or else the embedded robot of this name. */
 mozzi_status mozzi_model_open(const char *name_or_path, const mozzi_load_options *options, mozzi_model **model,
@@ -234,7 +238,7 @@ mozzi_status mozzi_model_with_gravity(const mozzi_model *model, const double gra
 mozzi_status mozzi_model_with_base(const mozzi_model *model, int32_t floating, mozzi_model **edited);
 /* The chain between two links, the first as its base. */
 mozzi_status mozzi_model_sub_chain(const mozzi_model *model, mozzi_frame from, mozzi_frame to, mozzi_model **edited);
-/* Other inertial parameters π, p numbers. Edits of the edited model start from its file's parameters again. */
+/* Other inertial parameters π, p numbers. Edits of the edited model keep them. */
 mozzi_status mozzi_model_with_parameters(const mozzi_model *model, const double *parameters, mozzi_model **edited);
 /* The constraints and motors of a text in JSON or YAML, such as
  * {"constraints": [{"name": "foot", "kind": "point", "a": {"frame": null}, "b": {"frame": "foot"}}]}. */
@@ -275,7 +279,8 @@ typedef struct mozzi_wrench {
     double F[6];
 } mozzi_wrench;
 
-/* What surrounds the robot; NULL in its place is the model's own: its gravity, {s} at rest, no wrenches. */
+/* What surrounds the robot; NULL in its place is the model's own: its gravity, {s} at rest, no wrenches. Begin with
+ * mozzi_model_environment: {0} has no gravity. */
 typedef struct mozzi_environment {
     double gravity[3];           /* in the axes of {s}, m/s² */
     double base_twist[6];        /* (ω, v) of {s} */
@@ -879,12 +884,14 @@ enum {
     MOZZI_EULER = 1,
     MOZZI_SEMI_IMPLICIT_EULER = 2,
     MOZZI_DORMAND_PRINCE = 3, /* adaptive */
-    MOZZI_MIDPOINT = 4        /* implicit, symplectic */
+    MOZZI_MIDPOINT = 4,       /* implicit, symplectic */
+    MOZZI_MOREAU = 5,         /* Moreau and Jean's, for dry friction and limits that are respected */
+    MOZZI_AUTOMATIC = 6       /* MOZZI_MOREAU for a robot with dry friction or limits that are respected, else RK4 */
 };
 enum { MOZZI_LIMITS_IGNORE = 0, MOZZI_LIMITS_REPORT = 1, MOZZI_LIMITS_RESPECT = 2 };
 
 /* Replaces the states of many robots, θ (states × nq) and θ̇ (states × n), by those after `steps` steps in `duration`
- * seconds under constant torques; the method is explicit, with fixed steps. */
+ * seconds under constant torques; the method is explicit, with fixed steps, which excludes robots with dry friction. */
 mozzi_status mozzi_batch_simulate(const mozzi_batch *batch, size_t states, double *theta, double *dtheta,
                                   const double *tau, const mozzi_batch_environment *environment, int32_t method,
                                   double duration, size_t steps);
@@ -893,13 +900,14 @@ typedef struct mozzi_simulation_options {
     double duration;      /* s */
     size_t steps;         /* of equal length; the interval of rows for an adaptive method */
     size_t record_every;  /* every k-th step is recorded, and the last */
-    int32_t method;       /* MOZZI_RUNGE_KUTTA_4, … */
+    int32_t method;       /* MOZZI_AUTOMATIC, … */
     int32_t joint_limits; /* MOZZI_LIMITS_… */
     double tolerance;     /* of MOZZI_DORMAND_PRINCE */
-    double slip_speed;    /* 0 for Coulomb friction μ sgn θ̇; else μ tanh(θ̇ / slip_speed), rad/s or m/s */
+    double slip_speed;    /* 0 for dry friction, which MOZZI_MOREAU computes; else μ tanh(θ̇ / slip_speed), rad/s or
+                             m/s, for every method */
     const double *gravity; /* 3 numbers in place of the model's, or NULL */
 } mozzi_simulation_options;
-/* Runge-Kutta 4, every step recorded, limits reported. */
+/* The automatic method, every step recorded, limits reported. */
 mozzi_status mozzi_simulation_defaults(double duration, size_t steps, mozzi_simulation_options *options);
 
 /* A row of a motion; arrays live during the call. Energies and works since the start, J. */
@@ -970,7 +978,7 @@ typedef struct mozzi_solution {
 } mozzi_solution;
 
 /* Positions that reach the goal, from a guess; among several, the nearest to `near`, unless that is NULL. `solution` may
- * be NULL. */
+ * be NULL. A floating base moves, too: load the robot with a fixed one to hold it. */
 mozzi_status mozzi_inverse_kinematics_solve(mozzi_inverse_kinematics *solver, int32_t kind, const double *goal,
                                             const double *guess, const double *near_theta, double *theta,
                                             mozzi_solution *solution);

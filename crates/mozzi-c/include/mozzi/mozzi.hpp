@@ -68,6 +68,8 @@ namespace detail {
 inline std::string text(const char *text) { return text == nullptr ? std::string() : std::string(text); }
 
 constexpr std::size_t unknown = static_cast<std::size_t>(-1);
+/// The size of a vector with gaps, such as a row of a matrix by columns.
+constexpr std::size_t gaps = static_cast<std::size_t>(-2);
 
 /// Has `data()` and `size()`: std::vector, std::array, std::span, …
 template <class T, class Number, class = void>
@@ -99,14 +101,13 @@ inline bool fits(const char *name, std::size_t found, std::size_t expected) noex
   if (found == unknown || found == expected) {
     return true;
   }
-  mozzi_report_length(name, found, expected);
+  found == gaps ? mozzi_report_gaps(name) : mozzi_report_length(name, found, expected);
   return false;
 }
 
 template <class T>
 std::size_t vector_size(const T &x) noexcept {
-  // a row of a matrix by columns has gaps: not what a vector may be
-  return x.size() <= 1 || x.innerStride() == 1 ? static_cast<std::size_t>(x.size()) : 0;
+  return x.size() <= 1 || x.innerStride() == 1 ? static_cast<std::size_t>(x.size()) : gaps;
 }
 
 }  // namespace detail
@@ -140,6 +141,7 @@ class [[nodiscard]] Result {
   Result(T value) : value_(std::move(value)) {}
   explicit Result(Status status) : status_(status), message_(status.message()) {}
   bool has_value() const noexcept { return value_.has_value(); }
+  bool ok() const noexcept { return has_value(); }
   explicit operator bool() const noexcept { return has_value(); }
   Status status() const noexcept { return status_; }
   const std::string &message() const noexcept { return message_; }
@@ -158,7 +160,9 @@ class [[nodiscard]] Result {
   }
   T &operator*() & noexcept { return *value_; }
   T &&operator*() && noexcept { return std::move(*value_); }
+  const T &operator*() const & noexcept { return *value_; }
   T *operator->() noexcept { return &*value_; }
+  const T *operator->() const noexcept { return &*value_; }
 
  private:
   void require() const {
@@ -296,24 +300,31 @@ class Pose {
   template <class T, std::enable_if_t<!detail::is_eigen<const T, const double>, int> = 0>
   Pose(const T &by_rows) noexcept {
     Input numbers(by_rows);
-    for (std::size_t k = 0; numbers.fits("the configuration", 16) && k < 16; ++k) {
-      numbers_[k] = numbers.data()[k];
+    has_size_ = numbers.fits("the configuration", 16);
+    is_given_ = has_size_ && numbers.data() != nullptr;
+    if (is_given_) {
+      std::copy(numbers.data(), numbers.data() + 16, numbers_.begin());
     }
   }
   template <class T, std::enable_if_t<detail::is_eigen<const T, const double>, int> = 0, class = void>
   Pose(const T &matrix) noexcept {
-    if (detail::fits("the configuration's rows", static_cast<std::size_t>(matrix.rows()), 4) &&
-        detail::fits("the configuration's columns", static_cast<std::size_t>(matrix.cols()), 4)) {
+    has_size_ = detail::fits("the configuration's rows", static_cast<std::size_t>(matrix.rows()), 4) &&
+                detail::fits("the configuration's columns", static_cast<std::size_t>(matrix.cols()), 4);
+    is_given_ = has_size_;
+    if (has_size_) {
       for (int k = 0; k < 16; ++k) {
         numbers_[static_cast<std::size_t>(k)] = matrix(k / 4, k % 4);
       }
     }
   }
-  /// 16 numbers by rows; 0 if it had another size, which no call accepts.
-  const double *data() const noexcept { return numbers_.data(); }
+  /// 16 numbers by rows; null if it was null.
+  const double *data() const noexcept { return is_given_ ? numbers_.data() : nullptr; }
+  /// Whether it had another size.
+  Status status() const noexcept { return Status(has_size_ ? MOZZI_OK : MOZZI_WRONG_LENGTH); }
 
  private:
   std::array<double, 16> numbers_{};
+  bool has_size_ = false, is_given_ = false;
 };
 
 /// A named frame of one model.
@@ -371,7 +382,6 @@ class Point {
 /// `base_acceleration` as they are in mozzi.h, and wrenches by `apply`.
 class Environment : public mozzi_environment {
  public:
-  Environment() : mozzi_environment{} {}
   Environment(const Environment &other) : mozzi_environment(other), applied_(other.applied_) { refer(); }
   Environment(Environment &&other) noexcept : mozzi_environment(other), applied_(std::move(other.applied_)) {
     refer();
@@ -402,6 +412,8 @@ class Environment : public mozzi_environment {
   }
 
  private:
+  friend class Model;
+  Environment() : mozzi_environment{} {}
   void refer() noexcept {
     wrenches = applied_.data();
     wrench_count = applied_.size();
@@ -615,6 +627,9 @@ class Model {
     });
   }
   Result<Model> with_frame(const std::string &name, Frame on, const Pose &T) const {
+    if (!T.status().ok()) {
+      return Result<Model>(T.status());
+    }
     return made([&](auto **m) { return mozzi_model_with_frame(get(), name.c_str(), on.c(), T.data(), m); });
   }
   Result<Model> with_end_effector(Frame frame) const {
@@ -1525,12 +1540,17 @@ class InverseKinematics {
   /// From a guess to θ with T_sb(θ) = T; among several the nearest to `near_theta`, if given.
   Status solve(const Pose &T, Input guess, Vector theta, const double *near_theta = nullptr,
                mozzi_solution *solution = nullptr) noexcept {
-    return solve(MOZZI_GOAL_POSE, T.data(), guess, theta, near_theta, solution);
+    return T.status().ok() ? solve(MOZZI_GOAL_POSE, T.data(), guess, theta, near_theta, solution) : T.status();
   }
   /// To a position of the frame's origin, at any orientation.
   Status solve_position(const std::array<double, 3> &p, Input guess, Vector theta, const double *near_theta = nullptr,
                         mozzi_solution *solution = nullptr) noexcept {
     return solve(MOZZI_GOAL_POSITION, p.data(), guess, theta, near_theta, solution);
+  }
+  /// To an orientation R_sb, 9 numbers by rows, at any position.
+  Status solve_orientation(const std::array<double, 9> &R, Input guess, Vector theta,
+                           const double *near_theta = nullptr, mozzi_solution *solution = nullptr) noexcept {
+    return solve(MOZZI_GOAL_ORIENTATION, R.data(), guess, theta, near_theta, solution);
   }
 
  private:

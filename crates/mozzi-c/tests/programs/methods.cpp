@@ -67,7 +67,7 @@ void all(const robot &robot, mozzi::Workspace &workspace) {
   std::copy(robot.wrench.F, robot.wrench.F + 6, F.begin());
   environment.apply(frame, F);  // replaces the first
   const mozzi::Environment copy = environment;
-  environment = mozzi::Environment();
+  environment = workspace.model().environment();
   for (std::size_t q = 0; q < robot.count; ++q) {
     const arguments &a = robot.quantities[q];
     Call<V, M> call{workspace, frame, task, about, copy, {}, {}, {}, {}, {}};

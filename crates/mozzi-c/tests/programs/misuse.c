@@ -247,13 +247,13 @@ static void edits(mozzi_model *model, mozzi_model *other) {
     EXPECT(MOZZI_NULL, mozzi_model_with_payload(model, frame, NULL, &edited));
     EXPECT(MOZZI_NULL, mozzi_model_with_payload(model, frame, T, NULL));
     EXPECT(MOZZI_NOT_FOUND, mozzi_model_with_locked_joints(model, &none, &one, 1, &edited));
-    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_model_with_locked_joints(model, &joint, &not_finite, 1, &edited));
+    EXPECT(MOZZI_NOT_FINITE, mozzi_model_with_locked_joints(model, &joint, &not_finite, 1, &edited));
     EXPECT(MOZZI_NULL, mozzi_model_with_locked_joints(model, NULL, &one, 1, &edited));
     EXPECT(MOZZI_NULL, mozzi_model_with_locked_joints(model, &joint, NULL, 1, &edited));
     EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_model_with_frame(model, "tool", frame, T, &edited));
     EXPECT(MOZZI_FOREIGN, mozzi_model_with_end_effector(model, foreign, &edited));
     EXPECT(MOZZI_NULL, mozzi_model_with_gravity(model, NULL, &edited));
-    EXPECT(MOZZI_REFUSED, mozzi_model_with_gravity(model, nan_10 + 3, &edited));
+    EXPECT(MOZZI_NOT_FINITE, mozzi_model_with_gravity(model, nan_10 + 3, &edited));
     EXPECT(MOZZI_REFUSED, mozzi_model_with_constraints(model, "{", &edited));
     EXPECT(MOZZI_NULL, mozzi_model_with_constraints(model, NULL, &edited));
     EXPECT(MOZZI_NOT_FOUND, mozzi_model_with_start(model, "no such state", &edited));
@@ -298,6 +298,22 @@ static void many(mozzi_model *model, mozzi_model *other) {
     EXPECT(MOZZI_NOT_FINITE, BATCH(MOZZI_GRAVITY_FORCES, 1));
     EXPECT(MOZZI_NOT_FINITE, mozzi_batch_simulate(batch, states, theta, out, out, NULL, 0, 1, 1));
     theta[2] = 0;
+    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_compute(batch, MOZZI_GRAVITY_FORCES, NULL, (size_t)-1, &in, 1, &around, &result, 1));
+    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, (size_t)-1, theta, out, out, NULL, 0, 1, 1));
+    {
+        double *each = calloc(states * 6, sizeof *each);
+        CHECK(each != NULL);
+        each[4] = NAN;
+        around.gravity_of_each = each;
+        EXPECT(MOZZI_NOT_FINITE, BATCH(MOZZI_GRAVITY_FORCES, 1));
+        around.gravity_of_each = NULL;
+        OK(mozzi_model_frame_at(model, 0, &wrench.frame));
+        wrench.F = each;
+        around.wrenches = &wrench;
+        around.wrench_count = 1;
+        EXPECT(MOZZI_NOT_FINITE, BATCH(MOZZI_GRAVITY_FORCES, 1));
+        free(each);
+    }
     OK(mozzi_model_frame_at(other, 0, &wrench.frame));
     wrench.F = out;
     around.wrenches = &wrench;

@@ -5,6 +5,7 @@ extern "C" {
 #include "check.h"
 }
 
+#include <algorithm>
 #include <functional>
 
 namespace {
@@ -27,7 +28,9 @@ void results() {
   const mozzi::Result<mozzi::Model> none = mozzi::Model::open("no such robot");
   CHECK(!none && none.status().code() == MOZZI_NOT_FOUND && none.message().find("no such robot") != std::string::npos);
   mozzi::Result<mozzi::Model> found = mozzi::Model::open("ur5");
-  CHECK(found && found.status().ok() && found->n() == 6 && (*found).nq() == 6);
+  CHECK(found && found.ok() && found.status().ok() && found->n() == 6 && (*found).nq() == 6);
+  const mozzi::Result<mozzi::Model> same = mozzi::Model::open("ur5");
+  CHECK(same->n() == 6 && (*same).nq() == 6);
   const mozzi::Model model = std::move(found).value();
   CHECK(model.name() == "ur5" || !model.name().empty());
   mozzi::Workspace workspace(model);
@@ -72,10 +75,18 @@ void models() {
   const mozzi::Model with_tool = model.with_frame("tool", tip, at).value();
   CHECK(with_tool.with_end_effector(with_tool.frame("tool").value()).value().end_effector().value().number() ==
         with_tool.frame("tool").value().number());
-  CHECK(!model.with_frame("tool", tip, std::vector<double>(15)));
+  CHECK(model.with_frame("tool", tip, std::vector<double>(15)).status().code() == MOZZI_WRONG_LENGTH);
+  const double *none = nullptr;
+  CHECK(model.with_frame("tool", tip, none).status().code() == MOZZI_NULL);
+  const float half = std::sqrt(0.5f);  // of a sensor: a quarter of a turn in seven digits
+  CHECK(model.with_frame("tool", tip, std::array<double, 16>{{half, -half, 0, 0, half, half, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}));
   CHECK(model.with_gravity({0, 0, -1.62}).value().gravity()[2] == -1.62);
   CHECK(model.with_base(true).value().nq() == 13 && model.with_parameters(model.parameters()).value().n() == 6);
   CHECK(!model.with_parameters(Numbers(3)));
+  Numbers heavier = model.parameters();
+  std::transform(heavier.begin(), heavier.end(), heavier.begin(), [](double x) { return 1.5 * x; });
+  const mozzi::Model heavy = model.with_parameters(heavier).value();
+  CHECK(std::fabs(heavy.with_gravity({0, 0, -1}).value().mass() - 1.5 * model.mass()) < 1e-9);
   CHECK(model.sub_chain(model.frame("upper_arm_link").value(), model.frame("wrist_2_link").value()).value().n() == 3);
   const Numbers theta{0.3, -1.2, 1.5, 0.3, 1.1, 0.2}, zero(6);
   CHECK(model.with_state("home", theta, zero).value().with_start("home").value().start().theta == theta);
@@ -154,6 +165,26 @@ void motions() {
   CHECK(difference(U.data(), T.data(), 16) < 1e-7);
   solver.solve_position({T[3], T[7], T[11]}, guess, found).or_throw();
   CHECK(solver.solve_position({100, 0, 0}, guess, found).code() == MOZZI_NOT_REACHED);
+  workspace.forward_kinematics(found, hand, U).or_throw();
+  CHECK(U[3] > 0.8);  // stretched towards it
+  solver.solve_orientation({T[0], T[1], T[2], T[4], T[5], T[6], T[8], T[9], T[10]}, guess, found).or_throw();
+  guess[0] = NAN;
+  CHECK(solver.solve(T, guess, found).code() == MOZZI_NOT_FINITE &&
+        std::string(mozzi_last_error()).find("guess[0] is NaN") == 0);
+
+  Numbers parameters = model.parameters();
+  const std::vector<std::string> names = model.parameter_names();
+  const auto friction = std::find_if(names.begin(), names.end(), [](const std::string &name) {
+    return name.find(".friction") != std::string::npos;
+  });
+  parameters[static_cast<std::size_t>(friction - names.begin())] = 0.2;
+  const mozzi::Model dry = model.with_parameters(parameters).value();
+  CHECK(mozzi::simulate(dry, options, theta, dtheta, brake, record).value().complete == 1);
+  mozzi::SimulationOptions smooth(1.0, 100);
+  smooth.method = MOZZI_RUNGE_KUTTA_4;
+  CHECK(!mozzi::simulate(dry, smooth, theta, dtheta, brake, record));
+  smooth.slip_speed = 0.01;
+  CHECK(mozzi::simulate(dry, smooth, theta, dtheta, brake, record).ok());
 }
 
 }  // namespace

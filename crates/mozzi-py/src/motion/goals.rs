@@ -2,7 +2,7 @@
 
 use crate::arguments::Given;
 use crate::array::{Numbers, wrong_shape};
-use crate::describe::{pose, rotation};
+use crate::describe::pose;
 use crate::failure::place;
 use mozzi::{Mat3, Vec3};
 use mozzi_motion::Goal;
@@ -77,7 +77,7 @@ impl<'py> Goals<'py> {
                 Kind::Pose => pose(std::array::from_fn(row4))
                     .map(Goal::Pose)
                     .map_err(|error| refused(index, Python::attach(|py| error.value(py).to_string()))),
-                Kind::Orientation => rotation(Mat3::from_rows(std::array::from_fn(row3)))
+                Kind::Orientation => SO3::from_rounded_matrix(Mat3::from_rows(std::array::from_fn(row3)))
                     .map(Goal::Orientation)
                     .map_err(|error| refused(index, error.to_string())),
             }

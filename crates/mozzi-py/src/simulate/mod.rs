@@ -47,7 +47,7 @@ impl<'a, 'py> Torque<'a, 'py> {
     }
 }
 
-/// A method of simulations; those of rollouts are the others than 'auto' and 'moreau'.
+/// A method of simulations.
 fn simulation_method(name: &str, tolerance: Option<f64>) -> PyResult<Method> {
     if let Some(tolerance) = tolerance.filter(|_| name != "dopri") {
         let message = format!("tolerance is {tolerance} and method '{name}', expected 'dopri' or no tolerance");
@@ -56,22 +56,23 @@ fn simulation_method(name: &str, tolerance: Option<f64>) -> PyResult<Method> {
     match name {
         "auto" => Ok(Method::Automatic),
         "moreau" => Ok(Method::MoreauJean),
-        other => method(other, tolerance.unwrap_or(1e-9)).map_err(|_| {
+        "dopri" => Ok(Method::DormandPrince { tolerance: tolerance.unwrap_or(1e-9) }),
+        other => rollout_method(other).map_err(|_| {
             let expected = "'auto', 'moreau', 'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
             PyValueError::new_err(format!("method is '{name}', expected {expected}"))
         }),
     }
 }
 
-fn method(name: &str, tolerance: f64) -> PyResult<Method> {
+/// A method of rollouts.
+fn rollout_method(name: &str) -> PyResult<Method> {
     match name {
         "rk4" => Ok(Method::RungeKutta4),
         "semi-implicit-euler" => Ok(Method::SemiImplicitEuler),
         "euler" => Ok(Method::Euler),
-        "dopri" => Ok(Method::DormandPrince { tolerance }),
         "midpoint" => Ok(Method::Midpoint),
         _ => {
-            let expected = "'rk4', 'semi-implicit-euler', 'euler', 'dopri' or 'midpoint'";
+            let expected = "'rk4', 'semi-implicit-euler', 'euler' or 'midpoint'";
             Err(PyValueError::new_err(format!("method is '{name}', expected {expected}")))
         }
     }

@@ -1,6 +1,6 @@
 //! Rollouts under a table of torques, and their vector-Jacobian products.
 
-use super::method;
+use super::rollout_method;
 use crate::arguments::Given;
 use crate::array::{Numbers, common_leading, wrong_shape};
 use crate::failure::{of_batch, of_model};
@@ -53,7 +53,7 @@ impl<'py> Inputs<'py> {
         let tails = [1, 1, 2, 2, 2];
         let leading = common_leading(tables.iter().zip(tails).map(|(table, tail)| (table.name, table.leading(tail))))?;
         tables.iter_mut().zip(tails).try_for_each(|(table, tail)| table.spread::<f64>(&leading, tail))?;
-        let mut options = BatchRollout { method: self::method(method, 0.0)?, ..BatchRollout::new(step, steps) };
+        let mut options = BatchRollout { method: rollout_method(method)?, ..BatchRollout::new(step, steps) };
         if let Some(gravity) = gravity {
             options.gravity = Some(Vec3(Numbers::fixed("gravity", gravity, "(3,): m/s²")?));
         }

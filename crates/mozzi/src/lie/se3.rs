@@ -95,11 +95,26 @@ impl SE3<f64> {
     /// # Errors
     /// If the upper left block is not a rotation to 10⁻¹², or the last row is not (0, 0, 0, 1).
     pub fn from_matrix(T: [[f64; 4]; 4]) -> Result<Self, InvalidConfiguration> {
+        Self::from_rows(T, SO3::from_matrix)
+    }
+
+    /// From a 4 × 4 matrix, as rows, whose rotation may have rounded numbers: see [`SO3::from_rounded_matrix`].
+    ///
+    /// # Errors
+    /// If the upper left block is not a rotation to 10⁻³, or the last row is not (0, 0, 0, 1).
+    pub fn from_rounded_matrix(T: [[f64; 4]; 4]) -> Result<Self, InvalidConfiguration> {
+        Self::from_rows(T, SO3::from_rounded_matrix)
+    }
+
+    fn from_rows(
+        T: [[f64; 4]; 4],
+        rotation: impl Fn(Mat3) -> Result<SO3, InvalidRotation>,
+    ) -> Result<Self, InvalidConfiguration> {
         if T[3] != [0.0, 0.0, 0.0, 1.0] {
             return Err(InvalidConfiguration::LastRow(T[3]));
         }
         let row = |i: usize| [T[i][0], T[i][1], T[i][2]];
-        let R = SO3::from_matrix(Mat3::from_rows([row(0), row(1), row(2)]))?;
+        let R = rotation(Mat3::from_rows([row(0), row(1), row(2)]))?;
         Ok(SE3 { R, p: Vec3([T[0][3], T[1][3], T[2][3]]) })
     }
 }

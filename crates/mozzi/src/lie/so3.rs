@@ -5,6 +5,9 @@ use crate::linalg::{Mat3, Vec3};
 use crate::scalar::{Real, Scalar};
 use core::ops::Mul;
 
+/// The numbers of a rotation matrix may be rounded by this: float32, printed digits.
+const ROUNDED: f64 = 1e-3;
+
 /// A rotation, as its matrix R with RᵀR = I and det R = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
@@ -104,6 +107,18 @@ impl SO3<f64> {
         } else {
             Err(InvalidRotation { deviation, tolerance, determinant })
         }
+    }
+
+    /// A rotation from its matrix, whose numbers may be rounded, such as float32 or printed digits: as
+    /// [`from_matrix`](Self::from_matrix), or the [nearest](Self::nearest) if no entry changes by 10⁻³.
+    ///
+    /// # Errors
+    /// [`InvalidRotation`].
+    pub fn from_rounded_matrix(R: Mat3) -> Result<Self, InvalidRotation> {
+        Self::from_matrix(R).or_else(|error| match Self::nearest(R) {
+            Ok((nearest, distance)) if distance < ROUNDED => Ok(nearest),
+            _ => Err(InvalidRotation { tolerance: ROUNDED, ..error }),
+        })
     }
 
     /// The rotation nearest to a matrix B in the Frobenius norm (its polar factor), and the largest entry of |R − B|.

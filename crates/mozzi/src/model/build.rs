@@ -135,6 +135,7 @@ pub(super) fn normal_form<C: Real>(description: &Description<C>, rounded: Descri
         gravity: Vec3(description.gravity),
         base: description.base,
         solves_by_mass_matrix: siblings.is_none() || !rotors.is_empty(),
+        is_described: true,
         structure: Arc::new(Structure {
             pattern,
             has_mimic_joints: moving_joints.iter().any(|&i| description.joints[i].mimic.is_some()),

@@ -14,7 +14,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::Invalid`] when the numbers are not finite.
     pub fn with_payload(&self, frame: FrameId, inertia: SpatialInertia) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         let (link, T) = self.link_of(frame);
         robot.links[link].inertia += inertia.transformed(T);
         robot.build()
@@ -25,7 +25,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::Invalid`] when the name is taken.
     pub fn with_frame(&self, name: impl Into<String>, on: FrameId, T: SE3) -> Result<Model, Error> {
-        let (mut robot, (link, T_link_on)) = (self.description().clone(), self.link_of(on));
+        let (mut robot, (link, T_link_on)) = (self.described()?, self.link_of(on));
         let link = robot.links[link].name.clone();
         robot.frames.push(NamedFrame { name: name.into(), link, T: T_link_on * T });
         robot.build()
@@ -39,14 +39,14 @@ impl Model<f64> {
     ///
     /// [`constraints`]: crate::constraints
     pub fn with_constraints(&self, constraints: impl IntoIterator<Item = Constraint>) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         robot.constraints.extend(constraints);
         robot.build()
     }
 
     /// A copy of the robot without constraints: the tree.
     pub fn without_constraints(&self) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         robot.constraints.clear();
         robot.build()
     }
@@ -58,7 +58,7 @@ impl Model<f64> {
     /// [`Error::Invalid`] for a name that is taken, a joint that does not exist or is no joint of one axis, numbers
     /// that are not finite.
     pub fn with_rotor(&self, name: impl Into<String>, armature: f64, gears: &[(&str, f64)]) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         let gears = gears.iter().map(|&(joint, ratio)| Gear { joint: joint.to_string(), ratio }).collect();
         robot.rotors.push(Rotor { name: name.into(), armature, gears });
         robot.build()
@@ -66,7 +66,7 @@ impl Model<f64> {
 
     /// A copy of the robot with this frame as its end effector.
     pub fn with_end_effector(&self, frame: FrameId) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         robot.end_effector = Some(self.frame_name(frame).to_string());
         robot.build()
     }
@@ -76,7 +76,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::Invalid`] when the numbers are not finite.
     pub fn with_gravity(&self, gravity: [f64; 3]) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         robot.gravity = gravity;
         robot.build()
     }
@@ -87,7 +87,7 @@ impl Model<f64> {
     /// # Errors
     /// Only those that the model had before.
     pub fn with_base(&self, base: Base) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         robot.base = base;
         if base == Base::Fixed {
             robot.states.iter_mut().for_each(|state| state.base = None);
@@ -100,7 +100,7 @@ impl Model<f64> {
     /// # Errors
     /// [`Error::WrongLength`]; [`Error::Invalid`] when the numbers are not finite, or a quaternion is not of length 1.
     pub fn with_state(&self, name: impl Into<String>, state: &State) -> Result<Model, Error> {
-        let (mut robot, named) = (self.description().clone(), self.named_state(name, state)?);
+        let (mut robot, named) = (self.described()?, self.named_state(name, state)?);
         match robot.states.iter_mut().find(|known| known.name == named.name) {
             Some(known) => *known = named,
             None => robot.states.push(named),
@@ -114,7 +114,7 @@ impl Model<f64> {
     /// [`Error::NoSuchState`].
     pub fn with_start(&self, name: &str) -> Result<Model, Error> {
         self.state(name)?;
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         robot.start = Some(name.to_string());
         robot.build()
     }
@@ -126,7 +126,7 @@ impl Model<f64> {
     /// [`Error::NoSuchJoint`]; [`Error::BadArgument`] for a mimic joint, a fixed, ball or free joint, or a position
     /// that is not finite.
     pub fn with_locked_joints(&self, positions: &[(&str, f64)]) -> Result<Model, Error> {
-        let mut robot = self.description().clone();
+        let mut robot = self.described()?;
         for &(name, position) in positions {
             let i = robot.joint_at(name)?;
             if let Some(mimic) = &robot.joints[i].mimic {
@@ -175,7 +175,7 @@ impl Model<f64> {
     /// [`Error::BadArgument`] if `to` is not a descendant of `from`, or if a joint on the path is coupled to one off
     /// the path by a mimic or a rotor.
     pub fn sub_chain(&self, from: FrameId, to: FrameId) -> Result<Model, Error> {
-        let whole = self.description();
+        let whole = &self.described()?;
         let (from, to) = (self.link_of(from).0, self.link_of(to).0);
         let (mut links, mut joints, mut at) = (BTreeSet::from([to]), BTreeSet::new(), to);
         while at != from {

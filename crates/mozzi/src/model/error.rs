@@ -133,13 +133,13 @@ impl fmt::Display for Error {
                 write!(f, "{what} has {found} entries, expected {expected}")
             }
             Error::NoSuchFrame { name, known } => {
-                write!(f, "there is no frame `{name}`; this robot has {}", names(known))
+                write!(f, "there is no frame `{name}`; this robot has {}", near(name, known))
             }
             Error::NoSuchJoint { name, known } => {
-                write!(f, "there is no joint `{name}`; this robot has {}", names(known))
+                write!(f, "there is no joint `{name}`; this robot has {}", near(name, known))
             }
             Error::NoSuchState { name, known } => {
-                write!(f, "there is no state `{name}`; this robot has {}", names(known))
+                write!(f, "there is no state `{name}`; this robot has {}", near(name, known))
             }
             Error::NoSuchQuantity { name, known } => {
                 let near = nearest(name, known, 3);
@@ -195,7 +195,19 @@ fn short(list: &[f64]) -> String {
 const SHOWN: usize = 12;
 
 pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {
-    first_names(names, 20)
+    first_names(names, MOST_NAMES)
+}
+
+/// Names listed in a message.
+const MOST_NAMES: usize = 20;
+
+/// All names, or of many the three nearest.
+fn near(name: &str, known: &[String]) -> String {
+    if known.len() <= MOST_NAMES {
+        return names(known);
+    }
+    let list: Vec<&str> = known.iter().map(String::as_str).collect();
+    format!("{}, the nearest of {}", names(&nearest(name, &list, 3)), known.len())
 }
 
 /// At most this many names; the others are counted.

@@ -9,6 +9,7 @@ mod configuration;
 mod constraint;
 mod contact_point;
 mod couples;
+mod described;
 pub mod description;
 mod edit;
 mod environment;
@@ -90,6 +91,8 @@ pub struct Model<C = f64> {
     pub(crate) base: Base,
     /// See [`solves_by_mass_matrix`](Self::solves_by_mass_matrix()).
     pub(crate) solves_by_mass_matrix: bool,
+    /// False if parameters of the description were replaced.
+    pub(crate) is_described: bool,
     pub(crate) structure: Arc<Structure>,
 }
 
@@ -295,6 +298,7 @@ impl<C: Scalar> Model<C> {
             gravity: self.gravity.map(f),
             base: self.base,
             solves_by_mass_matrix: self.solves_by_mass_matrix,
+            is_described: self.is_described,
             structure: Arc::clone(&self.structure),
         }
     }

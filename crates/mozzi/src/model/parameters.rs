@@ -67,7 +67,8 @@ impl<C: Scalar> Model<C> {
     }
 
     /// A copy of the robot with these [`parameters`](Self::parameters), possibly of another number type. Geometry,
-    /// frames, couplings and the springs' energy at θ = 0 do not change.
+    /// frames, couplings and the springs' energy at θ = 0 do not change, nor does the
+    /// [`description`](Self::description); edits such as [`with_payload`](Self::with_payload) keep the parameters.
     ///
     /// # Panics
     /// When there are not [`parameter_count`](Self::parameter_count) of them.
@@ -100,6 +101,7 @@ impl<C: Scalar> Model<C> {
         for (rotor, &armature) in model.rotors.iter_mut().zip(of_rotors) {
             rotor.armature = armature;
         }
+        model.is_described = false;
         model
     }
 
@@ -121,7 +123,7 @@ impl<C: Scalar> Model<C> {
     }
 
     /// The link of the description in whose frame a slot's body is expressed: the base, or the link that a joint moves.
-    fn link_at(&self, slot: usize) -> usize {
+    pub(super) fn link_at(&self, slot: usize) -> usize {
         slot.checked_sub(1).map_or(self.structure.base, |i| self.structure.moving_links[i])
     }
 
