@@ -17,6 +17,10 @@
 #ifndef MOZZI_HPP
 #define MOZZI_HPP
 
+#if !(__cplusplus >= 201703L || (defined(_MSVC_LANG) && _MSVC_LANG >= 201703L))
+#error "mozzi.hpp needs C++17: compile with -std=c++17 or newer"
+#endif
+
 #include "mozzi.h"
 
 #include <algorithm>
@@ -1429,14 +1433,14 @@ class Batch {
  public:
   /// On this many threads, 0 for all cores.
   static Result<Batch> create(const Model &model, std::size_t threads = 0) {
-    return created([&](auto **b) { return mozzi_batch_new(model.get(), threads, b); });
+    return created(model, [&](auto **b) { return mozzi_batch_new(model.get(), threads, b); });
   }
   /// Likewise, never by machine code, which changes the last digits once.
   static Result<Batch> kernels_only(const Model &model, std::size_t threads = 0) {
-    return created([&](auto **b) { return mozzi_batch_kernels_only(model.get(), threads, b); });
+    return created(model, [&](auto **b) { return mozzi_batch_kernels_only(model.get(), threads, b); });
   }
   static Result<Batch> create(const Program &program, std::size_t threads = 0) {
-    return created([&](auto **b) { return mozzi_batch_with_program(program.get(), threads, b); });
+    return created(program.model(), [&](auto **b) { return mozzi_batch_with_program(program.get(), threads, b); });
   }
   /// A quantity at many states. Allocates.
   Status compute(const Quantity &quantity, std::size_t states, std::initializer_list<mozzi_table> inputs,
@@ -1446,17 +1450,27 @@ class Batch {
     return Status(mozzi_batch_compute(get(), quantity.number, &subject, states, inputs.begin(), inputs.size(),
                                       environment, outputs.begin(), outputs.size()));
   }
+  /// Replaces many robots' states, θ (states × nq) and θ̇ (states × n), by those after the steps: see mozzi.h.
+  Status simulate(std::size_t states, Vector theta, Vector dtheta, Input tau, std::int32_t method, double duration,
+                  std::size_t steps, const mozzi_batch_environment *environment = nullptr) const noexcept {
+    if (!(theta.fits("theta", states * nq_) && dtheta.fits("dtheta", states * n_) && tau.fits("tau", states * n_))) {
+      return Status(MOZZI_WRONG_LENGTH);
+    }
+    return Status(mozzi_batch_simulate(get(), states, theta.data(), dtheta.data(), tau.data(), environment, method,
+                                       duration, steps));
+  }
   const mozzi_batch *get() const noexcept { return handle_.get(); }
 
  private:
-  Batch() = default;
+  explicit Batch(const Model &model) : nq_(model.nq()), n_(model.n()) {}
   template <class F>
-  static Result<Batch> created(F make) {
-    Batch batch;
+  static Result<Batch> created(const Model &model, F make) {
+    Batch batch(model);
     Status status(make(batch.handle_.put()));
     return status.ok() ? Result<Batch>(std::move(batch)) : Result<Batch>(status);
   }
 
+  std::size_t nq_, n_;
   detail::Handle<mozzi_batch, mozzi_batch_free> handle_;
 };
 
@@ -1468,6 +1482,9 @@ struct SimulationOptions : mozzi_simulation_options {
 };
 
 namespace detail {
+
+template <class T>
+constexpr bool is_null = std::is_null_pointer_v<Plain<T>>;
 
 template <class Torque, class Record>
 struct Callbacks {
@@ -1493,7 +1510,7 @@ struct Callbacks {
 }  // namespace detail
 
 /// The motion from (θ, θ̇). `torque(t, theta, dtheta, tau)` adds to tau, n numbers that are 0; `record(sample)` takes a
-/// row and returns whether to go on. What they throw is thrown again here.
+/// row and may return whether to go on; each may be nullptr. What they throw is thrown again here.
 template <class Torque, class Record>
 Result<mozzi_ending> simulate(const Model &model, const SimulationOptions &options, Input theta, Input dtheta,
                               Torque &&torque, Record &&record, const Program *program = nullptr) {
@@ -1505,13 +1522,24 @@ Result<mozzi_ending> simulate(const Model &model, const SimulationOptions &optio
   const mozzi_torque on_torque = [](void *user, double t, const double *q, const double *v, double *tau) {
     auto &own = *static_cast<Callbacks *>(user);
     return own.guarded([&]() -> std::int32_t {
-      own.torque(t, q, v, tau);
+      if constexpr (!detail::is_null<Torque>) {
+        own.torque(t, q, v, tau);
+      }
       return 0;
     });
   };
   const mozzi_record on_record = [](void *user, const mozzi_sample *sample) {
     auto &own = *static_cast<Callbacks *>(user);
-    return own.guarded([&]() -> std::int32_t { return own.record(*sample) ? 0 : 1; });
+    return own.guarded([&]() -> std::int32_t {
+      if constexpr (detail::is_null<Record>) {
+        return 0;
+      } else if constexpr (std::is_void_v<decltype(own.record(*sample))>) {
+        own.record(*sample);
+        return 0;
+      } else {
+        return own.record(*sample) ? 0 : 1;
+      }
+    });
   };
   mozzi_ending ending{};
   Status status(mozzi_simulate(model.get(), program == nullptr ? nullptr : program->get(), &options, theta.data(),
@@ -1546,6 +1574,11 @@ class InverseKinematics {
   Status solve_position(const std::array<double, 3> &p, Input guess, Vector theta, const double *near_theta = nullptr,
                         mozzi_solution *solution = nullptr) noexcept {
     return solve(MOZZI_GOAL_POSITION, p.data(), guess, theta, near_theta, solution);
+  }
+  Status solve_position(Input p, Input guess, Vector theta, const double *near_theta = nullptr,
+                        mozzi_solution *solution = nullptr) noexcept {
+    return p.fits("the position", 3) ? solve(MOZZI_GOAL_POSITION, p.data(), guess, theta, near_theta, solution)
+                                     : Status(MOZZI_WRONG_LENGTH);
   }
   /// To an orientation R_sb, 9 numbers by rows, at any position.
   Status solve_orientation(const std::array<double, 9> &R, Input guess, Vector theta,

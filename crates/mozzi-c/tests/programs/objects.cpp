@@ -142,6 +142,14 @@ void motions() {
   const mozzi_ending ending = mozzi::simulate(model, options, theta, dtheta, brake, record).value();
   CHECK(rows == 101 && end == 1.0 && ending.complete == 1);
   CHECK(!mozzi::simulate(model, options, Numbers(3), dtheta, brake, record));
+  Numbers last(2), both{0.4, -0.2, 0.4, -0.2}, rates{0.1, 0.3, 0.1, 0.3};
+  const auto keep = [&](const mozzi_sample &row) { std::copy(row.theta, row.theta + 2, last.begin()); };
+  CHECK(mozzi::simulate(model, options, theta, dtheta, nullptr, keep).value().complete == 1);
+  CHECK(mozzi::simulate(model, options, theta, dtheta, nullptr, nullptr).ok());
+  const mozzi::Batch pair = mozzi::Batch::create(model, 1).value();
+  pair.simulate(2, both, rates, Numbers(4), MOZZI_RUNGE_KUTTA_4, 1.0, 100).or_throw();
+  CHECK(difference(both.data() + 2, last.data(), 2) < 1e-9);
+  CHECK(pair.simulate(3, both, rates, Numbers(4), MOZZI_RUNGE_KUTTA_4, 1.0, 100).code() == MOZZI_WRONG_LENGTH);
 #if MOZZI_HAS_EXCEPTIONS
   struct Mine {};
   bool caught = false;
@@ -167,6 +175,8 @@ void motions() {
   CHECK(solver.solve_position({100, 0, 0}, guess, found).code() == MOZZI_NOT_REACHED);
   workspace.forward_kinematics(found, hand, U).or_throw();
   CHECK(U[3] > 0.8);  // stretched towards it
+  CHECK(solver.solve_position(Numbers{T[3], T[7], T[11]}, guess, found).ok());
+  CHECK(solver.solve_position(Numbers(4), guess, found).code() == MOZZI_WRONG_LENGTH);
   solver.solve_orientation({T[0], T[1], T[2], T[4], T[5], T[6], T[8], T[9], T[10]}, guess, found).or_throw();
   guess[0] = NAN;
   CHECK(solver.solve(T, guess, found).code() == MOZZI_NOT_FINITE &&
