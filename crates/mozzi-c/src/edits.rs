@@ -206,7 +206,8 @@ pub unsafe extern "C" fn mozzi_model_with_constraints(
     guard(|| unsafe {
         edit(model, edited, |robot| {
             let content = text(constraints, "constraints")?;
-            let parsed = mozzi_urdf::constraints::parse("constraints", content, robot.model.description().clone());
+            let described = robot.model.described().map_err(|error| of_model(&error))?;
+            let parsed = mozzi_urdf::constraints::parse("constraints", content, described);
             Ok(parsed.map_err(|error| of_constraints(&error))?.build())
         })
     })

@@ -77,6 +77,10 @@ fn what_cannot_be_is_refused_as_by_the_model() {
     let error =
         Equation::new(&other, Zero, &options).with_forward_dynamics(Some(&robot)).map(|_| ()).expect_err("another's");
     assert!(error.to_string().contains("that of another robot, `tree 4`"), "{error}");
+    let heavier = model.with_parameters(&model.parameters().iter().map(|x| 1.1 * x).collect::<Vec<_>>());
+    let error =
+        Equation::new(&heavier, Zero, &options).with_forward_dynamics(Some(&robot)).map(|_| ()).expect_err("light");
+    assert!(error.to_string().contains("that of a robot with other parameters"), "{error}");
 
     // a massless tip that turns freely
     let mut massless = common::tree(2, 3, 0);

@@ -71,7 +71,7 @@ pub fn convergence(
 ) -> Result<Vec<Convergence>, crate::Error> {
     check(duration > 0.0 && duration.is_finite(), "the duration", duration, "a positive, finite number of seconds")?;
     check(coarsest >= 1, "the number of steps", coarsest, "at least 1")?;
-    let mut smooth = model.description().clone();
+    let mut smooth = model.described()?;
     smooth.joints.iter_mut().for_each(|joint| joint.friction = 0.0);
     let model = &smooth.build()?;
     let finest = coarsest << halvings;

@@ -97,6 +97,8 @@ impl<'m, I: Input> Equation<'m, I> {
         let Some(other) = other else { return Ok(self) };
         let (mine, its) = (self.model.description(), other.model().description());
         check(mine == its, "the forward dynamics", format!("that of another robot, `{}`", its.name), "this robot's")?;
+        let has_same_parameters = self.model.parameters() == other.model().parameters();
+        check(has_same_parameters, "the forward dynamics", "that of a robot with other parameters", "this robot's")?;
         if self.gravity == self.model.gravity() && self.lambda.is_empty() {
             self.other = Some(other);
         }

@@ -87,6 +87,7 @@ void models() {
   std::transform(heavier.begin(), heavier.end(), heavier.begin(), [](double x) { return 1.5 * x; });
   const mozzi::Model heavy = model.with_parameters(heavier).value();
   CHECK(std::fabs(heavy.with_gravity({0, 0, -1}).value().mass() - 1.5 * model.mass()) < 1e-9);
+  CHECK(std::fabs(heavy.with_constraints("{\"constraints\": []}").value().mass() - 1.5 * model.mass()) < 1e-9);
   CHECK(model.sub_chain(model.frame("upper_arm_link").value(), model.frame("wrist_2_link").value()).value().n() == 3);
   const Numbers theta{0.3, -1.2, 1.5, 0.3, 1.1, 0.2}, zero(6);
   CHECK(model.with_state("home", theta, zero).value().with_start("home").value().start().theta == theta);

@@ -1,16 +1,17 @@
-//! The description of a model whose parameters were replaced, for edits.
+//! The description of a model whose parameters were replaced.
 
 use super::{Description, Error, Freedom, JOINT_PARAMETERS, Model};
 use crate::spatial::SpatialInertia;
 use alloc::format;
 
 impl Model<f64> {
-    /// The description with this model's [`parameters`](Self::parameters). Those that replaced the description's own
-    /// are written to the links that joints move, less what is fixed to them, and to source joints.
+    /// The [`description`](Self::description) with this model's [`parameters`](Self::parameters), to build another
+    /// robot from. Parameters that [replaced](Self::with_parameters) its own are written to the links that joints move,
+    /// less what is fixed to them, and to source joints.
     ///
     /// # Errors
     /// [`Error::BadArgument`] for a preload without stiffness, which no joint describes.
-    pub(super) fn described(&self) -> Result<Description, Error> {
+    pub fn described(&self) -> Result<Description, Error> {
         let mut robot = self.description().clone();
         if self.is_described {
             return Ok(robot);
