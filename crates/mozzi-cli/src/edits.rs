@@ -161,10 +161,9 @@ pub fn split<'t>(flag: &str, text: &'t str, expected: &str) -> Result<(&'t str, 
     text.rsplit_once('=').ok_or_else(|| Failure::wrong(format!("{flag} is `{text}`, expected {expected}")))
 }
 
-/// An inertia, checked for its mass.
+/// An inertia that a body can have.
 pub fn inertia(place: &str, [m, x, y, z, xx, xy, xz, yy, yz, zz]: [f64; 10]) -> Result<SpatialInertia> {
-    if m < 0.0 {
-        return Err(Failure::wrong(format!("{place}: the mass is {m} kg, expected at least 0")));
-    }
-    Ok(SpatialInertia::new(m, Vec3([x, y, z]), Sym3 { xx, xy, xz, yy, yz, zz }))
+    let G = SpatialInertia::new(m, Vec3([x, y, z]), Sym3 { xx, xy, xz, yy, yz, zz });
+    let verdict = G.verdict();
+    if verdict.is_physical() { Ok(G) } else { Err(Failure::wrong(format!("{place}: {verdict}"))) }
 }

@@ -217,6 +217,7 @@ fn from_urdf_to_urdf_the_text_stays() {
     says(&[&out, "--lock", "elbow"], "--lock is `elbow`, expected JOINT=POSITION");
     says(&[&out, "--payload", "lower=1,2"], "--payload lower has 2 entries, expected m, m and c");
     says(&[&out, "--payload", "lower=-1"], "the mass is -1 kg, expected at least 0");
+    says(&[&out, "--payload", "lower=1,0,0,0,0.1,0,0,0.1,0,5"], "--payload lower: the principal moments about the");
     says(&[&out, "--inertia", "hand=1,0,0,0,1,0,0,1,0,1"], "there is no link `hand`");
     text(&["convert", &arm, &arm, "--in-place", "--lock", "elbow=0"]);
     assert_eq!(json(&["info", &arm])["n"], 1);

@@ -4,7 +4,7 @@ use mozzi::model::Base;
 use mozzi::model::description::{
     self, BaseState, Description, FreeJoint, Gear, Joint, JointKind, Limits, Link, Mimic, NamedFrame, NamedState, Rotor,
 };
-use mozzi::{Mat3, SE3, SO3, ScrewAxis, SpatialInertia, Vec3};
+use mozzi::{SE3, ScrewAxis, SpatialInertia, Vec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -4,7 +4,7 @@ use crate::arguments::Given;
 use crate::array::{Numbers, wrong_shape};
 use crate::describe::pose;
 use crate::failure::place;
-use mozzi::{Mat3, Vec3};
+use mozzi::{Mat3, SO3, Vec3};
 use mozzi_motion::Goal;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
