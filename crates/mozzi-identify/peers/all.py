@@ -1,6 +1,6 @@
 """Every program of the comparison on the logs at hand: figaroh, MuJoCo's sysid and mozzi, with the same filter and split.
 
-    pip install figaroh mujoco scipy example-robot-data
+    pip install figaroh "mujoco[sysid]" scipy example-robot-data
     python all.py MOZZI LOGS [--robots FOLDER] [--sysid]
 
 MOZZI is the program, LOGS the folder of panda.csv and ur10.csv. Printed are root mean square errors of torques by joint,
