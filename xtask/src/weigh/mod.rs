@@ -60,9 +60,13 @@ fn text(workspace: &Workspace, main_job_only: bool) -> Result<(String, String), 
     let is_over = |row: &&Row| row.most.is_some_and(|most| row.found > most);
     let over = rows.iter().filter(is_over).map(|row| row.what).collect::<Vec<_>>().join(", ");
     let table = rows.iter().map(Row::text).collect::<Vec<_>>().join("\n");
-    let machine = build.machine;
+    let (machine, (name, there)) = (build.machine, crates::YARDSTICK);
+    let speed = format!(
+        "Measured on {machine}, where `{name}` takes {:.1} CPU s; seconds are those of a machine on which it takes {there}.",
+        build.yardstick
+    );
     let page = format!(
-        "{HEAD}\nMeasured on {machine}.\n\n| what | now | at most |\n|---|---|---|\n{table}\n\n## The main job's packages\n\n\
+        "{HEAD}\n{speed}\n\n| what | now | at most |\n|---|---|---|\n{table}\n\n## The main job's packages\n\n\
          | package | CPU s |\n|---|---|\n{}\n",
         build.packages.join("\n")
     );
