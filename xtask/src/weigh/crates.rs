@@ -12,7 +12,7 @@ use std::process::{Command, ExitCode};
 /// The file to which each rustc's time is appended: `package seconds`.
 pub const LOG: &str = "MOZZI_WEIGH";
 const FOLDER: &str = "target/weigh";
-/// A package of another project and its CPU seconds on the machine in whose seconds all are told: machines that others
+/// A package of another project, and its CPU seconds on the machine whose seconds the page has: machines that others
 /// use, too, take up to three times as many.
 pub const YARDSTICK: (&str, f64) = ("syn", 6.2);
 /// Packages with less are one row.
