@@ -73,7 +73,7 @@ const char *mozzi_last_error(void);
 /* Stores the text "NAME has FOUND entries, expected EXPECTED" and returns MOZZI_WRONG_LENGTH: for wrappers in other
  * languages that know lengths. */
 mozzi_status mozzi_report_length(const char *name, size_t found, size_t expected);
-/* As what fails a vector whose numbers do not lie next to each other, likewise. */
+/* Likewise for a vector whose numbers do not lie next to each other. */
 mozzi_status mozzi_report_gaps(const char *name);
 
 /* ------------------------------------------------------------------------------------------------- handles */

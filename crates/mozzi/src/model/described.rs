@@ -1,6 +1,6 @@
 //! The description of a model whose parameters were replaced.
 
-use super::{Description, Error, Freedom, JOINT_PARAMETERS, Model};
+use super::{Description, Error, Freedom, Model};
 use crate::spatial::SpatialInertia;
 use alloc::format;
 
@@ -17,9 +17,8 @@ impl Model<f64> {
             return Ok(robot);
         }
         let parameters = self.parameters();
-        let (of_bodies, of_joints) = parameters.split_at(10 * self.bodies().count());
-        let (of_joints, of_rotors) = of_joints.split_at(JOINT_PARAMETERS * self.places().len());
-        for (slot, &body) in self.bodies().zip(of_bodies.as_chunks::<10>().0) {
+        let (of_bodies, of_joints, of_rotors) = self.parts_of(&parameters);
+        for (slot, &body) in self.bodies().zip(of_bodies) {
             let (link, mut own) = (self.link_at(slot), body);
             for k in (0..robot.links.len()).filter(|&k| k != link && self.frames[k].slot == slot) {
                 let fixed = robot.links[k].inertia.transformed(self.frames[link].T.inverse() * self.frames[k].T);
@@ -30,9 +29,8 @@ impl Model<f64> {
         for joint in robot.joints.iter_mut().filter(|joint| joint.mimic.is_some()) {
             [joint.armature, joint.damping, joint.friction, joint.stiffness] = [0.0; 4];
         }
-        let of_joints = self.places().iter().zip(of_joints.as_chunks::<JOINT_PARAMETERS>().0);
         for (&i, (place, &[armature, damping, friction, stiffness, preload])) in
-            self.structure.joints.iter().zip(of_joints)
+            self.structure.joints.iter().zip(self.places().iter().zip(of_joints))
         {
             let joint = &mut robot.joints[i];
             [joint.armature, joint.damping, joint.friction, joint.stiffness] = [armature, damping, friction, stiffness];

@@ -76,18 +76,15 @@ impl<C: Scalar> Model<C> {
         let (found, expected) = (parameters.len(), self.parameter_count());
         assert!(found == expected, "there are {found} parameters, expected {expected}");
         let mut model = self.map(U::from);
-        let (of_bodies, of_joints) = parameters.split_at(10 * self.bodies().count());
-        let (of_joints, of_rotors) = of_joints.split_at(JOINT_PARAMETERS * self.places().len());
-        for (slot, parameters) in self.bodies().zip(of_bodies.as_chunks().0) {
+        let (of_bodies, of_joints, of_rotors) = self.parts_of(parameters);
+        for (slot, parameters) in self.bodies().zip(of_bodies) {
             let G = SpatialInertia::from_parameters(*parameters).transformed(model.link_frame(slot));
             match slot.checked_sub(1) {
                 None => model.base_inertia = G,
                 Some(i) => model.links[i].G = G,
             }
         }
-        for (place, &[armature, damping, friction, stiffness, preload]) in
-            self.places().iter().zip(of_joints.as_chunks().0)
-        {
+        for (place, &[armature, damping, friction, stiffness, preload]) in self.places().iter().zip(of_joints) {
             for j in place.velocities() {
                 (model.armature[j], model.damping[j], model.friction[j]) = (armature, damping, friction);
             }
@@ -103,6 +100,13 @@ impl<C: Scalar> Model<C> {
         }
         model.is_described = false;
         model
+    }
+
+    /// π in parts: of each body, of each independent joint, of each rotor.
+    pub(super) fn parts_of<'p, U>(&self, parameters: &'p [U]) -> (&'p [[U; 10]], &'p [[U; JOINT_PARAMETERS]], &'p [U]) {
+        let (of_bodies, of_others) = parameters.split_at(10 * self.bodies().count());
+        let (of_joints, of_rotors) = of_others.split_at(JOINT_PARAMETERS * self.places().len());
+        (of_bodies.as_chunks().0, of_joints.as_chunks().0, of_rotors)
     }
 
     /// The spring of a joint, a new one of stiffness 0 if it has none; None for a free joint.
