@@ -3,7 +3,7 @@
 use crate::compress::{Compressed, Evidence, PARTS};
 use crate::estimate::least_squares::Decomposition;
 use crate::finding::keep_causes;
-use crate::judgement::{rest, short, suspicion};
+use crate::judgement::{limits, rest, short, suspicion};
 use crate::predict::predict_some;
 use crate::setup::{Estimates, Limits, Setup, without_constraints};
 use crate::signals::{Filter, Samples, prepare};
@@ -139,6 +139,7 @@ pub fn identify<'m>(
         if options.choice.links {
             more.extend(rest::check(model, log));
         }
+        more.extend(limits::check(model, log, &of_log, !options.choice.gains));
         keep_causes(&mut more);
         // a log that contradicts itself is not compared with the robot
         if !options.choice.gains && !more.iter().any(|finding| finding.level == Level::Fault) {
@@ -146,6 +147,12 @@ pub fn identify<'m>(
         }
         samples.push(of_log);
         findings.extend(more);
+    }
+    for (k, log) in logs.iter().enumerate() {
+        if let Some(other) = logs[..k].iter().find(|other| other.is_same(log)) {
+            let text = format!("{} and {} hold the same rows: they count twice", other.name, log.name);
+            findings.push(Finding::warning("same_log", text));
+        }
     }
     if options.choice.links {
         findings.extend(short::check(logs, &samples));

@@ -56,6 +56,11 @@ impl Log {
         self.t.len()
     }
 
+    /// Whether another log holds the same motion and forces.
+    pub fn is_same(&self, other: &Log) -> bool {
+        self.rows() > 0 && self.theta == other.theta && self.tau == other.tau
+    }
+
     /// All tables with their names and widths.
     fn tables<'l>(&'l self, model: &Model) -> Vec<(&'static str, &'l [f64], usize)> {
         let mut all = vec![("theta", self.theta.as_slice(), model.nq()), ("tau", self.tau.as_slice(), model.n())];

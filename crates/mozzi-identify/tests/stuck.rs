@@ -157,10 +157,19 @@ fn spikes_and_drop_outs_are_left_out() {
     [700, 701, 1300].into_iter().for_each(|row| spikes.tau[row * n + 2] = 1e6);
     let found = accepted(&model, &spikes, 8.0);
     let text = warning(&found, "spike").expect("a warning");
-    assert!(text.contains("the force of elbow_joint") && text.contains("row 700") && text.contains("3 of 2000 rows"));
+    assert!(text.contains("the force jumps") && text.contains("elbow_joint in 3 of 2000 rows"), "{text}");
+    assert!(text.contains("row 700"), "{text}");
     let filter = options(8.0).filter;
     let errors = |found: &Identification<'_>| found.validate(&clean, &filter).expect("a log").0.consistent;
     let best = errors(&accepted(&model, &clean, 8.0));
+    assert!(errors(&found)[2] < 1.1 * best[2]);
+    let mut spikes = clean.clone();
+    [300, 800].into_iter().for_each(|row| spikes.theta[row * n + 4] = -9999.0);
+    spikes.dtheta.iter_mut().for_each(|table| table[900 * n] = 1e30);
+    let found = accepted(&model, &spikes, 8.0);
+    for words in ["the position jumps far away for a moment: wrist_2_joint in 2", "the velocity jumps"] {
+        assert!(found.findings.iter().any(|finding| finding.text.contains(words)), "{words}: {:?}", found.findings);
+    }
     assert!(errors(&found)[2] < 1.1 * best[2]);
     let mut zeros = clean.clone();
     (0..20).for_each(|k| zeros.dtheta.iter_mut().for_each(|table| table[(100 + 90 * k) * n..][..n].fill(0.0)));

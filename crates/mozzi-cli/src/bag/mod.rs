@@ -43,6 +43,11 @@ struct Topics(BTreeMap<String, Topic>);
 impl Topics {
     /// Adds a message that was received at this time, ns.
     fn add(&mut self, file: &str, topic: &str, received: i64, bytes: &[u8]) -> Result<()> {
+        if bytes.starts_with(b"\x28\xb5\x2f\xfd") {
+            return Err(Failure::wrong(format!(
+                "{file}: the messages of {topic} are compressed by zstd; `ros2 bag convert` writes them uncompressed"
+            )));
+        }
         let of_topic = self.0.entry(topic.to_string()).or_default();
         let Some(state) = State::read(bytes, received) else {
             of_topic.damaged += 1;

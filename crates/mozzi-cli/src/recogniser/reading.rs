@@ -79,6 +79,21 @@ fn exact(name: &str, joints: &[&str], row_unit: Option<Unit>) -> Option<Reading>
 
 /// A name without one of the robot's joints: `q1`, `joint_states/position[3]`, `effort_elbow`.
 fn generic(name: &str, row_unit: Option<Unit>) -> Option<Reading> {
+    let found = at_the_end(name, row_unit);
+    let has_number = found.as_ref().is_some_and(|found| matches!(found.entry, Entry::Index(_)));
+    if has_number { found } else { before_the_number(name).or(found) }
+}
+
+/// With the unit before the number: `position_deg_0`, `velocity_deg_s[3]`.
+fn before_the_number(name: &str) -> Option<Reading> {
+    let end = name.trim_end_matches([']', ')']);
+    let bare = end.trim_end_matches(|c: char| c.is_ascii_digit());
+    let (number, before) = (&end[bare.len()..], bare.trim_end_matches(['_', '[', '(', '.', ' ']));
+    let (rest, unit) = unit::split(before, |_, unit| unit.name.len() > 1).filter(|_| !number.is_empty())?;
+    of_components(&format!("{rest}_{number}"), Some(unit))
+}
+
+fn at_the_end(name: &str, row_unit: Option<Unit>) -> Option<Reading> {
     let whole = |text: &str, unit: Option<Unit>| of_components(text, unit.or(row_unit));
     let split = unit::split(name, |rest, unit| {
         let found = of_components(rest, Some(unit));
@@ -121,6 +136,11 @@ fn of_components(name: &str, unit: Option<Unit>) -> Option<Reading> {
 
 /// A number among fillers, or a name.
 fn entry_of(text: &str) -> Entry {
+    // an entry of an array: `motor_state[3]`
+    let number = text.strip_suffix(']').and_then(|rest| rest.rsplit_once('[')?.1.parse().ok());
+    if let Some(k) = number {
+        return Entry::Index(k);
+    }
     let found = words(text);
     let mut numbers = found.iter().filter_map(|(_, text)| match word(text) {
         Word::Number(k) => Some(k),
@@ -311,6 +331,16 @@ mod tests {
             ("joint_position_1", THETA, Entry::Index(1)),
             ("jointVelocity1", DTHETA, Entry::Index(1)),
             ("current_position_1", THETA, Entry::Index(1)),
+            ("position_deg_0", THETA, Entry::Index(0)),
+            ("velocity_deg_s[3]", DTHETA, Entry::Index(3)),
+            ("velocity_deg_s_2", DTHETA, Entry::Index(2)),
+            ("motor_state[3].q", THETA, Entry::Index(3)),
+            ("/lowstate/motor_state[3]/tau_est", TAU, Entry::Index(3)),
+            ("actuators[2].position", THETA, Entry::Index(2)),
+            ("qpos_1", THETA, Entry::Index(1)),
+            ("qfrc_actuator_1", TAU, Entry::Index(1)),
+            ("dof_pos_0", THETA, Entry::Index(0)),
+            ("q₂", THETA, Entry::Index(2)),
             ("tau", TAU, Entry::Missing),
         ] {
             assert_eq!(generic_of(text), Some((quantity, entry)), "{text}");
@@ -319,6 +349,7 @@ mod tests {
             "actual_TCP_force_0",
             "joint_temperatures_0",
             "tau_ext_hat_filtered[0]",
+            "tau_gravity_0",
             "dtau_J[0]",
             "speed_scaling",
             "position_error_1",

@@ -23,8 +23,25 @@ enum Part {
     Rest(String, f64),
 }
 
-const WORDS: [&str; 6] = ["t", "time", "timestamp", "stamp", "duration", "elapsed"];
-const QUALIFIERS: [&str; 26] = [
+const WORDS: [&str; 13] = [
+    "t",
+    "time",
+    "timestamp",
+    "stamp",
+    "duration",
+    "elapsed",
+    "seconds",
+    "uptime",
+    "clock",
+    "utc",
+    "zeit",
+    "zeitstempel",
+    "datetime",
+];
+const QUALIFIERS: [&str; 29] = [
+    "rosbag",
+    "bag",
+    "date",
     "header",
     "field",
     "ros",
@@ -67,11 +84,14 @@ fn part(name: &str) -> Option<(Part, usize)> {
     let text = |k: usize| all[k].1.as_str();
     let last = all.len().checked_sub(1)?;
     let before = || name[..all[last].0.start].to_string();
-    let is_qualified = |count: usize| (0..count).all(|k| QUALIFIERS.contains(&text(k)));
+    let is_qualified = |count: usize| (0..count).all(|k| text(k) == "nano" || QUALIFIERS.contains(&text(k)));
     let is_in_path = name.contains("stamp");
     if is_qualified(last) || is_in_path {
         let rank = if is_in_path { 1 } else { 2 };
         match text(last) {
+            "sec" if last > 0 && text(last - 1) == "nano" => {
+                return Some((Part::Rest(name[..all[last - 1].0.start].to_string(), 1e-9), rank));
+            }
             "sec" | "secs" => return Some((Part::Seconds(before()), rank)),
             "nsec" | "nsecs" | "nanosec" | "nanosecs" | "nanoseconds" => {
                 return Some((Part::Rest(before(), 1e-9), rank));
@@ -91,7 +111,7 @@ fn part(name: &str) -> Option<(Part, usize)> {
     }
     let is_rostopic = name == "%time" || rest.starts_with("field.") && stamp;
     let rank = match rest {
-        "%time" => 3,
+        "%time" | "rosbagTimestamp" => 3,
         _ if stamp => 1,
         "duration" | "elapsed" => 4,
         _ => 2,
@@ -130,7 +150,14 @@ pub fn find(place: &str, header: &Header, roles: &mut [Role]) -> Result<Option<T
                     None => (*rank, Time::Column { column: *column, factor: Some(1.0) }),
                 });
             }
-            Part::Rest(..) => {}
+            // `time_usec` alone
+            Part::Rest(prefix, factor) => {
+                let is_whole = !parts.iter().any(|(_, part, _)| matches!(part, Part::Seconds(_)))
+                    && words(prefix).iter().any(|(_, word)| ["t", "time", "timestamp"].contains(&word.as_str()));
+                if is_whole {
+                    found.push((*rank, Time::Column { column: *column, factor: Some(*factor) }));
+                }
+            }
         }
     }
     // whole seconds of a stamp without the rest are no time of rows, if there is another
@@ -227,6 +254,11 @@ mod tests {
         assert_eq!(of("/joint_states/header/stamp"), Some((Part::Whole(None), 1)));
         assert_eq!(of("header.stamp.secs"), Some((Part::Seconds("header.stamp.".into()), 1)));
         assert_eq!(of("header.stamp.nsecs"), Some((Part::Rest("header.stamp.".into(), 1e-9), 1)));
+        assert_eq!(of("time_stamp_sec"), Some((Part::Seconds("time_stamp_".into()), 1)));
+        assert_eq!(of("time_stamp_nano_sec"), Some((Part::Rest("time_stamp_".into(), 1e-9), 1)));
+        assert_eq!(of("timeStampNanoSec"), Some((Part::Rest("timeStamp".into(), 1e-9), 2)));
+        assert_eq!(of("Zeit [min]"), Some((Part::Whole(Some(60.0)), 2)));
+        assert_eq!(of("rosbagTimestamp"), Some((Part::Whole(None), 3)));
         assert_eq!(of("nanosec"), Some((Part::Rest(String::new(), 1e-9), 2)));
         assert_eq!(of("timestamp_ns"), Some((Part::Whole(Some(1e-9)), 2)));
         assert_eq!(of("duration"), Some((Part::Whole(None), 4)));

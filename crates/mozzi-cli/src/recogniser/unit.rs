@@ -28,11 +28,13 @@ const DEGREE: f64 = PI / 180.0;
 use Dimension::{Acceleration, Current, Force, Position, Share, Time, Velocity};
 
 /// Spellings without spaces, underscores, `*`, `·` and `^`, in lower case.
-const UNITS: [(&[&str], &str, Dimension, f64); 40] = [
+const UNITS: [(&[&str], &str, Dimension, f64); 46] = [
     (&["s", "sec", "secs", "second", "seconds"], "s", Time, 1.0),
     (&["ms", "msec", "msecs", "millis", "milliseconds"], "ms", Time, 1e-3),
     (&["us", "µs", "μs", "usec", "micros", "microseconds"], "µs", Time, 1e-6),
     (&["ns", "nsec", "nanos", "nanoseconds"], "ns", Time, 1e-9),
+    (&["min", "minute", "minutes"], "min", Time, 60.0),
+    (&["h", "hr", "hour", "hours"], "h", Time, 3600.0),
     (&["rad", "rads", "radian", "radians"], "rad", Position, 1.0),
     (&["mrad", "mrads"], "mrad", Position, 1e-3),
     (&["deg", "degs", "degree", "degrees", "°", "grad"], "deg", Position, DEGREE),
@@ -58,6 +60,10 @@ const UNITS: [(&[&str], &str, Dimension, f64); 40] = [
     (&["cnm"], "cN m", Force, 1e-2),
     (&["ncm", "n.cm"], "N cm", Force, 1e-2),
     (&["knm", "kn.m"], "kN m", Force, 1e3),
+    (&["lbfin", "lbin", "inlb", "in-lb", "inlbf", "in-lbf", "lbf-in"], "lbf in", Force, 0.112_984_829),
+    (&["lbfft", "lbft", "ftlb", "ft-lb", "ftlbf", "ft-lbf", "lbf-ft"], "lbf ft", Force, 1.355_817_948),
+    (&["kgfcm", "kgcm", "kgf-cm", "kg-cm", "kgf.cm", "kg.cm"], "kgf cm", Force, 0.098_066_5),
+    (&["kgfm", "kgm", "kgf-m", "kg-m"], "kgf m", Force, 9.806_65),
     (&["n", "newton", "newtons"], "N", Force, 1.0),
     (&["mn"], "mN", Force, 1e-3),
     (&["kn"], "kN", Force, 1e3),

@@ -32,20 +32,51 @@ pub enum Word {
 }
 
 const QUANTITIES: [(&[&str], usize); 4] = [
-    (&["theta", "q", "pos", "position", "angle", "ang", "θ"], THETA),
+    (&["theta", "q", "qpos", "pos", "position", "angle", "ang", "θ"], THETA),
     (
-        &["dtheta", "qd", "dq", "qdot", "dqdt", "vel", "velocity", "velocitie", "speed", "omega", "thetadot", "θdot"],
+        &[
+            "dtheta",
+            "qd",
+            "dq",
+            "qdot",
+            "qvel",
+            "dqdt",
+            "vel",
+            "velocity",
+            "velocitie",
+            "speed",
+            "omega",
+            "thetadot",
+            "θdot",
+        ],
         DTHETA,
     ),
-    (&["ddtheta", "qdd", "ddq", "qddot", "acc", "accel", "acceleration", "thetaddot", "θddot"], DDTHETA),
-    (&["tau", "torque", "effort", "moment", "force", "trq", "trque", "tq", "eff", "τ"], TAU),
+    (&["ddtheta", "qdd", "ddq", "qddot", "qacc", "acc", "accel", "acceleration", "thetaddot", "θddot"], DDTHETA),
+    (&["tau", "torque", "effort", "moment", "force", "qfrc", "trq", "trque", "tq", "eff", "τ"], TAU),
 ];
 
 const WORDS: [(Word, &[&str]); 8] = [
     (Word::Current, &["current", "cur", "curr", "amp", "iq", "i", "amperage"]),
     (
         Word::Origin(Origin::Measured),
-        &["actual", "act", "measured", "meas", "msr", "real", "feedback", "fb", "fbk", "sensed", "sensor", "present"],
+        &[
+            "actual",
+            "act",
+            "measured",
+            "meas",
+            "msr",
+            "real",
+            "feedback",
+            "fb",
+            "fbk",
+            "sensed",
+            "present",
+            "ist",
+            "est",
+            "estimated",
+            "estimate",
+            "applied",
+        ],
     ),
     (Word::Origin(Origin::Target), &["target", "tgt"]),
     (
@@ -63,10 +94,11 @@ const WORDS: [(Word, &[&str]); 8] = [
             "sp",
             "goal",
             "planned",
+            "soll",
         ],
     ),
     (Word::Motor, &["motor", "mot", "rotor", "drive"]),
-    (Word::Link, &["link", "linkside"]),
+    (Word::Link, &["link", "linkside", "sensor"]),
     (
         Word::Filler,
         &[
@@ -89,6 +121,8 @@ const WORDS: [(Word, &[&str]); 8] = [
             "jointstates",
             "output",
             "no",
+            "dof",
+            "actuator",
         ],
     ),
     (
@@ -133,6 +167,13 @@ const WORDS: [(Word, &[&str]); 8] = [
             "covariance",
             "bits",
             "gripper",
+            "gravity",
+            "grav",
+            "friction",
+            "coriolis",
+            "inertial",
+            "model",
+            "predicted",
         ],
     ),
 ];
@@ -144,7 +185,8 @@ const DOTS: [(char, &str); 2] = [('\u{307}', "dot"), ('\u{308}', "ddot")];
 pub fn words(text: &str) -> Vec<(std::ops::Range<usize>, String)> {
     let mut found: Vec<(std::ops::Range<usize>, String)> = Vec::new();
     let mut before: Option<char> = None;
-    for (k, c) in text.char_indices() {
+    for (k, written) in text.char_indices() {
+        let c = digit(written);
         if c.is_alphanumeric() {
             let continues = before.is_some_and(|last| {
                 last.is_alphanumeric()
@@ -156,18 +198,26 @@ pub fn words(text: &str) -> Vec<(std::ops::Range<usize>, String)> {
             }
             if let Some((range, word)) = found.last_mut() {
                 word.extend(c.to_lowercase());
-                range.end = k + c.len_utf8();
+                range.end = k + written.len_utf8();
             }
         } else if let (Some((_, dots)), Some((range, word))) =
             (DOTS.iter().find(|(dots, _)| *dots == c), found.last_mut())
             && range.end == k
         {
             word.push_str(dots);
-            range.end = k + c.len_utf8();
+            range.end = k + written.len_utf8();
         }
         before = Some(c);
     }
     found
+}
+
+/// q₁ is q1.
+fn digit(c: char) -> char {
+    match c {
+        '₀'..='₉' => char::from_digit(u32::from(c) - u32::from('₀'), 10).unwrap_or(c),
+        _ => c,
+    }
 }
 
 /// The meaning of a word in lower case.
@@ -193,6 +243,7 @@ mod tests {
         assert_eq!(of("actual_qd_0"), ["actual", "qd", "0"]);
         assert_eq!(of("tau_J[3]"), ["tau", "j", "3"]);
         assert_eq!(of("jointPosition12"), ["joint", "position", "12"]);
+        assert_eq!(of("q₁₂"), ["q", "12"]);
         assert_eq!(of("θ\u{307}_1 q\u{308}2"), ["θdot", "1", "qddot", "2"]);
         assert_eq!([word("θdot"), word("qddot")], [Word::Quantity(DTHETA), Word::Quantity(DDTHETA)]);
         assert_eq!(word("efforts"), Word::Quantity(TAU));

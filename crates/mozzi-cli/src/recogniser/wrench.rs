@@ -18,7 +18,7 @@ pub fn of(column: &str) -> Option<(String, usize)> {
     })
 }
 
-/// All wrenches; an incomplete one is an error.
+/// All wrenches; an incomplete one is an error, but for the three forces or moments of a sensor that has no others.
 pub fn find(place: &str, names: &[String]) -> Result<Vec<Wrench>> {
     let mut found: Vec<(String, [Option<usize>; 6])> = Vec::new();
     for (column, name) in names.iter().enumerate() {
@@ -42,5 +42,10 @@ pub fn find(place: &str, names: &[String]) -> Result<Vec<Wrench>> {
         }
         Ok((name, columns.map(Option::unwrap_or_default)))
     };
+    let is_half = |columns: &[Option<usize>; 6]| {
+        let [moments, forces] = [&columns[..3], &columns[3..]].map(|half| half.iter().flatten().count());
+        [moments, forces] == [3, 0] || [moments, forces] == [0, 3]
+    };
+    found.retain(|(name, columns)| name != "wrench" || !is_half(columns));
     found.into_iter().map(whole).collect()
 }

@@ -34,7 +34,13 @@ pub fn join(samples: &mut Samples, model: &Model) -> Result<()> {
     };
     let mut rows: Vec<usize> = (0..N).filter(|&row| is_row(row)).collect();
     if rows.is_empty() {
-        return Err(Failure::wrong(format!("{file} has no row with numbers of the robot's joints")));
+        let why = match samples.tables.contains_key("theta") {
+            true => format!("{file} has no row with numbers of the robot's joints"),
+            false => format!(
+                "{file}: no column is a position of the robot's joints, such as q1; --columns shows how each is read"
+            ),
+        };
+        return Err(Failure::wrong(why));
     }
     let share = |table: &[f64], k: usize, rows: &[usize]| {
         let width = width(table);

@@ -17,8 +17,8 @@ const ROWS: usize = 100;
 /// If no joint is faster than this in the unit of the times, rad or m, the unit is shorter than a second.
 const SLOW: f64 = 0.01;
 
-/// Leaves out rows without numbers and repeated ones, converts times to seconds, and counts them from the first row if
-/// that is farther from 0 than the motion is long.
+/// Leaves out rows without numbers and repeated ones, converts times to seconds, unwraps positions, and counts times
+/// from the first row if that is farther from 0 than the motion is long.
 pub fn mended(mut samples: Samples, model: &Model) -> Result<Samples> {
     if samples.t.is_none() || samples.count == 0 {
         return Ok(samples);
@@ -73,15 +73,14 @@ fn leave_out(samples: &mut Samples) -> Result<()> {
     Ok(())
 }
 
-/// Converts times in ms, µs or ns, and times of too few digits, by the rule of `identify`.
+/// Converts times in ms, µs or ns, and times of too few digits, and unwraps positions, by the rules of `identify`.
 fn clock(samples: &mut Samples, model: &Model) -> Result<()> {
     let mut log = Log { name: samples.file.clone(), t: samples.t.take().unwrap_or_default(), ..Log::default() };
     log.theta = samples.tables.remove("theta").unwrap_or_default();
     log.dtheta = samples.tables.remove("dtheta");
     log.is_time_certain = samples.is_time_certain || !may_be_shorter(&log, model);
-    let found = if log.theta.is_empty() { None } else { log.with_clock(model) };
-    let mut t = None;
-    if let Some((times, findings)) = found {
+    let found = if log.theta.is_empty() { None } else { log.with_clock_and_turns(model) };
+    if let Some((mended, findings)) = found {
         for finding in findings {
             match finding.level {
                 Level::Fault if finding.code == "time_unit" => {} // rows may be a minute apart
@@ -89,9 +88,9 @@ fn clock(samples: &mut Samples, model: &Model) -> Result<()> {
                 _ => failure::write(&format!("{finding}\n")),
             }
         }
-        t = Some(times);
+        log = mended;
     }
-    samples.t = Some(t.unwrap_or(log.t));
+    samples.t = Some(log.t);
     samples.tables.extend((!log.theta.is_empty()).then_some(("theta".to_string(), log.theta)));
     samples.tables.extend(log.dtheta.map(|table| ("dtheta".to_string(), table)));
     // an impact may have two rows at one time

@@ -38,6 +38,8 @@ pub fn check_kind(file: &str) -> Result<()> {
         bytes if bytes.starts_with(b"\x80\x04\x95") || bytes.starts_with(b"\x80\x05\x95") => {
             wrong("a pickle of Python, which is not read since it may run code; df.to_csv(\"log.csv\") writes CSV")
         }
+        bytes if bytes.starts_with(b"\xfd7zXZ\0") => wrong("compressed by xz; `unxz` it first"),
+        bytes if bytes.starts_with(b"\x28\xb5\x2f\xfd") => wrong("compressed by zstd; `unzstd` it first"),
         [0x1f, 0x8b, ..] => wrong("compressed by gzip; `gunzip` it first"),
         _ => Ok(()),
     }

@@ -154,7 +154,25 @@ impl TextTable {
 
 /// True for the texts that programs write for a missing number.
 fn is_missing(cell: &str) -> bool {
-    ["", "nan", "null", "none", "na", "n/a", "-", "--", "#n/a"].contains(&cell.trim().to_lowercase().as_str())
+    const TEXTS: [&str; 16] = [
+        "",
+        "nan",
+        "null",
+        "none",
+        "na",
+        "n/a",
+        "-",
+        "--",
+        "#n/a",
+        "-nan",
+        "nan(ind)",
+        "-nan(ind)",
+        "1.#qnan",
+        "-1.#ind",
+        "#value!",
+        "?",
+    ];
+    TEXTS.contains(&cell.trim().to_lowercase().as_str())
 }
 
 /// Reads a file, or standard input for `-`. The robot is chosen by the header.

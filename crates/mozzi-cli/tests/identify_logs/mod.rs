@@ -3,6 +3,7 @@
 
 mod bags;
 mod commands;
+mod drivers;
 mod motion;
 mod readers;
 

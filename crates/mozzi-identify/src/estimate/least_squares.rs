@@ -57,12 +57,8 @@ impl LeastSquares {
         let mut sigma: Vec<f64> = evidence.rms().into_iter().map(start).collect();
         // each force's share of the unknowns, as if they were spread evenly
         let freedom = (1.0 - r as f64 / rows as f64).sqrt();
-        let mut x = vec![0.0; evidence.unknowns];
         for _ in 0..ROUNDS {
-            let R = reduced(&evidence.weighted(&sigma), base);
-            let values = solve(&R);
-            x.fill(0.0);
-            base.columns.iter().zip(&values).for_each(|(&k, value)| x[k] = *value);
+            let x = weighted_by(evidence, base, &sigma);
             let next: Vec<f64> = evidence.rmse(&x).into_iter().map(|e| (e / freedom).max(least)).collect();
             let change = next.iter().zip(&sigma).map(|(a, b)| (a / b).ln().abs()).fold(0.0, f64::max);
             sigma = next;
@@ -73,11 +69,23 @@ impl LeastSquares {
         let R = reduced(&evidence.weighted(&sigma), base);
         let independent = (evidence.samples() as f64 * evidence.independent).sqrt();
         let Solution { values, deviations, condition, rank } = Solution::new(&R);
-        x.fill(0.0);
-        base.columns.iter().zip(&values).for_each(|(&k, value)| x[k] = *value);
+        let x = spread(base, &values, evidence.unknowns);
         let deviations = deviations.into_iter().map(|d| d / independent).collect();
         Ok(LeastSquares { deviations, values, x, sigma, condition, rank })
     }
+}
+
+/// All unknowns of least squares with these σ of the forces.
+pub fn weighted_by(evidence: &Evidence, base: &BaseParameters, sigma: &[f64]) -> Vec<f64> {
+    let values = solve(&reduced(&evidence.weighted(sigma), base));
+    spread(base, &values, evidence.unknowns)
+}
+
+/// Base parameters at their columns, 0 at the others.
+fn spread(base: &BaseParameters, values: &[f64], unknowns: usize) -> Vec<f64> {
+    let mut x = vec![0.0; unknowns];
+    base.columns.iter().zip(values).for_each(|(&k, value)| x[k] = *value);
+    x
 }
 
 /// A solution with what is known about it.

@@ -1,6 +1,10 @@
 //! Mistakes that may have been made in a log, each undone in a sample.
 
+use core::f64::consts::{FRAC_PI_2, PI};
 use mozzi::{Model, Vec3};
+
+/// One joint's positions are not taken for degrees below this, rad.
+const TURN: f64 = 2.0 * PI;
 
 /// A mistake that may have been made.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,28 +19,35 @@ pub enum Mistake {
     MotionSign(usize),
     JointSign(usize),
     AllForceSigns,
+    /// The force of a joint is this many times too large.
+    ForceScale(usize, f64),
     Degrees,
     JointDegrees(usize),
+    /// The positions of a joint lack this, rad or m.
+    Offset(usize, f64),
     /// Forces are shares of the effort limits, this many to one.
     Rated(f64),
     Gravity([f64; 3]),
     /// Forces without those of gravity.
     NoGravity,
+    /// Measured wrenches that do not act on the robot.
+    Wrench,
 }
 
 impl Mistake {
-    /// Every mistake that is tried.
-    pub fn all(model: &Model, has_limits: bool) -> Vec<Mistake> {
+    /// Every mistake that is tried, for positions up to `most`.
+    pub fn all(model: &Model, has_limits: bool, most: &[f64]) -> Vec<Mistake> {
         let n = model.n();
         let mut all = Vec::new();
+        let quarters = [FRAC_PI_2, -FRAC_PI_2, PI];
         for a in 0..n {
-            let of_one =
-                [Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a), Mistake::JointDegrees(a)];
-            all.extend(of_one);
-            for b in a + 1..n {
-                all.extend([Mistake::SwappedForces(a, b), Mistake::SwappedMotions(a, b), Mistake::SwappedJoints(a, b)]);
+            all.extend([Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a)]);
+            all.extend(quarters.map(|offset| Mistake::Offset(a, offset)));
+            if most[a] > TURN {
+                all.push(Mistake::JointDegrees(a));
             }
         }
+        all.extend(Mistake::swaps(n));
         all.extend([Mistake::Degrees, Mistake::AllForceSigns]);
         if n > 2 {
             all.push(Mistake::Reversed);
@@ -57,10 +68,27 @@ impl Mistake {
         all
     }
 
+    /// Joints of each pair.
+    pub fn swaps(n: usize) -> impl Iterator<Item = Mistake> {
+        let pairs = (0..n).flat_map(move |a| (a + 1..n).map(move |b| (a, b)));
+        pairs.flat_map(|(a, b)| {
+            [Mistake::SwappedForces(a, b), Mistake::SwappedMotions(a, b), Mistake::SwappedJoints(a, b)]
+        })
+    }
+
+    /// Undoes the mistake in odd functions of the velocities.
+    pub fn undo_rates(&self, rates: &mut [f64]) {
+        match *self {
+            Mistake::SwappedMotions(a, b) | Mistake::SwappedJoints(a, b) => rates.swap(a, b),
+            Mistake::MotionSign(a) | Mistake::JointSign(a) => rates[a] = -rates[a],
+            _ => {}
+        }
+    }
+
     /// Undoes the mistake in one sample: positions, velocities and accelerations, and forces.
     pub fn undo(&self, motion: &mut [Vec<f64>; 3], tau: &mut [f64], limits: &[f64]) {
         match *self {
-            Mistake::None | Mistake::Gravity(_) | Mistake::NoGravity => {}
+            Mistake::None | Mistake::Gravity(_) | Mistake::NoGravity | Mistake::Wrench => {}
             Mistake::SwappedForces(a, b) => tau.swap(a, b),
             Mistake::SwappedMotions(a, b) => motion.iter_mut().for_each(|x| x.swap(a, b)),
             Mistake::SwappedJoints(a, b) => {
@@ -77,9 +105,11 @@ impl Mistake {
                 motion.iter_mut().for_each(|x| x[a] = -x[a]);
                 tau[a] = -tau[a];
             }
+            Mistake::ForceScale(a, factor) => tau[a] /= factor,
             Mistake::AllForceSigns => tau.iter_mut().for_each(|x| *x = -*x),
             Mistake::Degrees => motion.iter_mut().flatten().for_each(|x| *x = x.to_radians()),
             Mistake::JointDegrees(a) => motion.iter_mut().for_each(|x| x[a] = x[a].to_radians()),
+            Mistake::Offset(a, offset) => motion[0][a] += offset,
             Mistake::Rated(whole) => tau.iter_mut().zip(limits).for_each(|(x, limit)| *x *= limit / whole),
         }
     }
@@ -91,8 +121,10 @@ impl Mistake {
             Mistake::SwappedForces(..) | Mistake::SwappedMotions(..) | Mistake::SwappedJoints(..) => "swapped_joints",
             Mistake::Reversed => "swapped_joints",
             Mistake::ForceSign(_) | Mistake::MotionSign(_) | Mistake::JointSign(_) | Mistake::AllForceSigns => "sign",
-            Mistake::Degrees | Mistake::JointDegrees(_) | Mistake::Rated(_) => "unit",
+            Mistake::Degrees | Mistake::JointDegrees(_) | Mistake::ForceScale(..) | Mistake::Rated(_) => "unit",
+            Mistake::Offset(..) => "offset",
             Mistake::Gravity(_) | Mistake::NoGravity => "gravity",
+            Mistake::Wrench => "wrench",
         }
     }
 
@@ -116,6 +148,9 @@ impl Mistake {
                 format!("position and velocity of {} seem to have the opposite sign", names[a])
             }
             Mistake::JointSign(a) => format!("all columns of {} seem to have the opposite sign", names[a]),
+            Mistake::ForceScale(a, factor) => {
+                format!("the force of {} seems to be in another unit, {factor} times as large as in N m", names[a])
+            }
             Mistake::AllForceSigns => "all forces seem to have the opposite sign".to_string(),
             Mistake::Degrees => {
                 "positions and velocities seem to be in degrees, expected rad; name them q1_deg, qd1_deg/s".to_string()
@@ -124,6 +159,11 @@ impl Mistake {
                 "position and velocity of {} seem to be in degrees, expected rad; name its columns q_deg, qd_deg/s",
                 names[a]
             ),
+            Mistake::Offset(a, offset) => format!(
+                "the zero of {} seems to be another than the file's: its positions fit if {offset:.3} ({:.1}°) is added",
+                names[a],
+                offset.to_degrees()
+            ),
             Mistake::Rated(whole) => format!(
                 "forces are not in N m: they seem to be in {} of the rated torque, the file's effort limit; multiply \
                  each by limit/{whole}, or log N m",
@@ -131,6 +171,11 @@ impl Mistake {
             ),
             Mistake::Gravity(g) => {
                 format!("gravity seems to be {g:?} m/s² in the base frame, not {:?}", model.gravity().0)
+            }
+            Mistake::Wrench => {
+                "the measured wrenches seem not to act on the robot: a sensor with an offset, in another \
+                                frame, or behind the load; remove their columns"
+                    .to_string()
             }
             Mistake::NoGravity => {
                 "forces seem to lack those of gravity, as those of drivers that compensate it; log the \

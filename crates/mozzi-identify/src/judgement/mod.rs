@@ -4,7 +4,9 @@ pub mod determined;
 pub mod excitation;
 mod gains;
 mod lag;
+pub(crate) mod limits;
 mod mistake;
+mod refit;
 pub mod residuals;
 pub(crate) mod rest;
 pub mod sensor;
@@ -48,7 +50,11 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
     for (samples, log) in found.samples.iter().zip(logs) {
         let of_log = found.predicted_unseen(samples)?;
         let all: Vec<Residual> = (0..n).map(|j| Residual::new(names[j], j, n, samples, &of_log)).collect();
-        findings.extend(lag::check(&log.name, &all, 1.0 / samples.rate));
+        let refitted = refit::check(found, &log.name, samples);
+        if refitted.is_none() {
+            findings.extend(lag::check(&log.name, &all, 1.0 / samples.rate));
+        }
+        findings.extend(refitted);
         findings.extend(colour(&log.name, &all));
         findings.extend(unexplained(&log.name, &all));
         findings.extend(blunted(&log.name, samples, columns));

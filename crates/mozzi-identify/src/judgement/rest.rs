@@ -1,5 +1,6 @@
 //! Logs of a robot that does not move.
 
+use crate::mend::spikes;
 use crate::{Finding, Log};
 use mozzi::{Freedom, Model};
 
@@ -31,7 +32,7 @@ pub fn check(model: &Model, log: &Log) -> Option<Finding> {
     }
     let positions =
         |q: usize| -> Vec<f64> { log.theta.iter().skip(q).step_by(nq).copied().filter(|x| x.is_finite()).collect() };
-    let all: Vec<Vec<f64>> = places.iter().map(|place| positions(place.q)).collect();
+    let all: Vec<Vec<f64>> = places.iter().map(|place| spikes::without(positions(place.q))).collect();
     let most = all.iter().map(|x| range(x)).fold(0.0, f64::max);
     all.iter().all(|x| is_at_rest(x)).then(|| {
         Finding::fault(

@@ -70,7 +70,8 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
     let names: Vec<&str> = model.velocity_names().collect();
     let mut comparison = Comparison::new(model, samples);
     let as_it_is = comparison.score(&Mistake::None);
-    let all: Vec<(Mistake, f64)> = Mistake::all(model, comparison.limits.is_some())
+    let most = comparison.most();
+    let all: Vec<(Mistake, f64)> = Mistake::all(model, comparison.limits.is_some(), &most)
         .into_iter()
         .filter_map(|mistake| {
             let (score, without) = comparison.scores(&mistake);
@@ -143,6 +144,13 @@ impl<'a> Comparison<'a> {
         };
         let limits = model.velocity_names().map(limit).collect();
         Comparison { model, samples, rows, limits, workspace: fast::Workspace::new(model) }
+    }
+
+    /// The largest size of each position.
+    fn most(&self) -> Vec<f64> {
+        let n = self.model.n();
+        let of = |j: usize| self.rows.iter().map(|&k| self.samples.theta[k * n + j].abs()).fold(0.0, f64::max);
+        (0..n).map(of).collect()
     }
 
     /// Σ_j log of the share of force j that the robot, with friction, armature and an offset fitted, does not predict.

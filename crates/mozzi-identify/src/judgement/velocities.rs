@@ -185,7 +185,7 @@ pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, 
             ),
         ));
     }
-    findings.extend(scale(&log.name, &scales));
+    findings.extend(scale(&log.name, &scales, moving.len()));
     let (along, size) = lags;
     if size > 0.0 && (along / size).abs() > rows.step.max(2e-3) && findings.is_empty() {
         let lag = along / size;
@@ -203,24 +203,69 @@ pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, 
     findings
 }
 
+/// Relative difference, after the filter, above which logged accelerations are not used.
+const ACCELERATION_APART: f64 = 0.2;
+
+/// A note if logged accelerations are not the derivatives of the velocities, as those of a driver that writes zeros, or
+/// of a sensor.
+pub fn accelerations(
+    model: &Model,
+    log: &Log,
+    rows: &Rows,
+    low_pass: Option<&LowPass>,
+    trim: usize,
+) -> Option<Finding> {
+    let logged = log.ddtheta.as_ref()?;
+    let places = model.configuration_space().places();
+    if places.iter().any(|place| place.freedom != Freedom::One) {
+        return None;
+    }
+    let mut signals = Signals::new(model, log, rows, logged, low_pass, trim)?;
+    if let Some(dtheta) = &log.dtheta {
+        signals.slopes = Signals::new(model, log, rows, dtheta, low_pass, trim)?.logged;
+    }
+    let size = |x: &[f64]| dot(x, x).sqrt();
+    let seconds: Vec<Vec<f64>> = signals.slopes.iter().map(|x| derivative(x, rows.step)).collect();
+    let most = seconds.iter().map(|x| size(x)).fold(0.0, f64::max);
+    let apart = |j: usize| {
+        let rest: Vec<f64> = signals.logged[j].iter().zip(&seconds[j]).map(|(a, b)| a - b).collect();
+        size(&rest) / size(&seconds[j])
+    };
+    let moving = (0..model.n()).filter(|&j| size(&seconds[j]) > SLOW.sqrt() * most).map(|j| (j, apart(j)));
+    let (j, worst) = moving.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, worst)| *worst > ACCELERATION_APART)?;
+    let name = model.velocity_names().nth(j)?;
+    Some(Finding::note(
+        "acceleration",
+        format!(
+            "{}: logged accelerations are not used: that of {name} differs by {:.0} % from the derivative of its velocity",
+            log.name,
+            100.0 * worst
+        ),
+    ))
+}
+
 /// Velocities in another unit than positions.
-fn scale(log: &str, scales: &[(&str, f64)]) -> Option<Finding> {
+fn scale(log: &str, scales: &[(&str, f64)], moving: usize) -> Option<Finding> {
     let (_, first) = scales.first()?;
     let is_near = |x: f64| (0.85..1.18).contains(&(first / x));
+    let is_common = moving > 1 && scales.len() == moving && scales.iter().all(|(_, x)| (x / first - 1.0).abs() < 0.02);
+    const NAME_IT: &str = "Name the unit in the header, such as q1_deg";
     let unit = match () {
         () if is_near(57.2958) => ": velocities in deg/s, positions in rad?",
         () if is_near(1.0 / 57.2958) => ": positions in degrees, velocities in rad/s?",
         () if is_near(9.5493) => ": velocities in rpm?",
         () if is_near(1e3) || is_near(1e6) || is_near(1e9) => ": times in ms, µs or ns?",
         () if is_near(1e-3) => ": velocities per ms, or in mrad/s?",
+        () if is_common => ", the same for all joints: the clock's unit is not a second, as of a count of rows?",
         () => ": another unit, or the motor's side of a gear?",
     };
+    let remedy = if unit.contains("clock") { "Log seconds" } else { NAME_IT };
     let list: Vec<String> = scales.iter().map(|(name, factor)| format!("{name} {factor:.4}")).collect();
     Some(Finding::fault(
         "unit",
         format!(
-            "{log}: velocities are not the derivatives of positions but a multiple of them ({}){unit} Name the unit in \
-             the header, such as q1_deg",
+            "{log}: velocities are not the derivatives of positions but a multiple of them ({}){unit} \
+             {remedy}",
             list.join(", ")
         ),
     ))

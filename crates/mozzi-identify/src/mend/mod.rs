@@ -3,7 +3,7 @@
 
 mod clock;
 mod dropouts;
-mod spikes;
+pub(crate) mod spikes;
 mod stuck;
 mod wrap;
 
@@ -50,12 +50,15 @@ fn at(log: &Log, row: usize) -> String {
 }
 
 impl Log {
-    /// Times in seconds, if those of the log are in another unit or have too few digits, and what was found about them.
-    /// Forces may be missing.
-    pub fn with_clock(&self, model: &Model) -> Option<(Vec<f64>, Vec<Finding>)> {
+    /// Times in seconds, if those of the log are in another unit or have too few digits, positions that do not wrap,
+    /// and what was found about both. Forces may be missing.
+    pub fn with_clock_and_turns(&self, model: &Model) -> Option<(Log, Vec<Finding>)> {
         let (mut log, mut findings) = (Cow::Borrowed(self), Vec::new());
         clock::mend(model, &mut log, &mut findings);
-        (!findings.is_empty()).then(|| (log.into_owned().t, findings))
+        let mut of_turns = Vec::new();
+        wrap::unwrap(model, &mut log, &mut of_turns);
+        findings.extend(of_turns.into_iter().filter(|finding| finding.code == "wrapped"));
+        (!findings.is_empty()).then(|| (log.into_owned(), findings))
     }
 
     /// Keeps some rows.

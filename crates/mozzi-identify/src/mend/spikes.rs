@@ -1,4 +1,4 @@
-//! Forces far outside of what a joint ever has: errors of a transmission.
+//! Numbers far outside of what a joint ever has: errors of a transmission.
 
 use super::{at, axes, quantile};
 use crate::cores::each;
@@ -6,50 +6,92 @@ use crate::{Finding, Log};
 use mozzi::Model;
 use std::borrow::Cow;
 
-/// A spike is above this many times what 99 % of the joint's forces have,
+/// A spike is above this many times what 99 % of the joint's numbers have,
 const ABOVE_USUAL: f64 = 20.0;
 
-/// or above this many times the effort limit, if the other forces are near it or below.
+/// or, of a force, above this many times the effort limit, if the other forces are near it or below.
 const ABOVE_LIMIT: f64 = 10.0;
 
-/// A larger share of such rows is no row of spikes.
+/// A larger share of such rows is no row of spikes,
 const MOST: f64 = 0.01;
 
-/// Removes rows with a force that cannot be.
+/// nor are more consecutive rows of a position or a velocity: the joint moved.
+const TOGETHER: usize = 3;
+
+/// Spikes of one signal.
+struct Spikes {
+    /// 99 % of the numbers are below.
+    usual: f64,
+    bound: f64,
+    rows: Vec<usize>,
+}
+
+/// Removes rows with a force, a velocity or a position that cannot be.
 pub fn remove(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
-    let (N, n) = (log.rows(), model.n());
+    let (N, n, nq) = (log.rows(), model.n(), model.nq());
     let limits: Vec<_> = model.joints().map(|joint| (joint.name.clone(), joint.limits.effort)).collect();
     let mut is_out = vec![false; N];
     let axes = axes(model);
-    let found = each(axes.len(), log.tau.len(), |k| {
-        let (_, j, name) = &axes[k];
-        let force = |row: usize| log.tau[row * n + j].abs();
-        let usual = quantile((0..N).map(force).collect(), 0.99);
-        let limit = limits.iter().find(|(joint, _)| joint == name).and_then(|(_, effort)| *effort);
-        let bound = match limit.filter(|limit| *limit > 0.0 && usual <= 2.0 * limit) {
-            Some(limit) => (ABOVE_USUAL * usual).min(ABOVE_LIMIT * limit).max(limit),
-            None => ABOVE_USUAL * usual,
-        };
-        (usual, bound, (0..N).filter(|&row| force(row) > bound).collect::<Vec<usize>>())
-    });
-    for ((usual, bound, spikes), (_, j, name)) in found.into_iter().zip(&axes) {
-        let Some(&first) = spikes.first().filter(|_| usual > 0.0 && spikes.len() as f64 <= MOST * N as f64) else {
-            continue;
-        };
-        findings.push(Finding::warning(
-            "spike",
-            format!(
-                "{}: the force of {name} is above {bound:.3e} in {} of {N} rows, first {:.3e} at {}, and below \
-                 {usual:.3e} in 99 % of them: an error of the sensor or its transmission; these rows are left out",
-                log.name,
-                spikes.len(),
-                log.tau[first * n + j],
+    let tables = [("force", Some(&log.tau)), ("velocity", log.dtheta.as_ref()), ("position", Some(&log.theta))];
+    for (what, table) in tables.into_iter().filter_map(|(what, table)| Some((what, table?))) {
+        let found = each(axes.len(), table.len(), |k| {
+            let (q, j, name) = &axes[k];
+            let (width, at) = if what == "position" { (nq, *q) } else { (n, *j) };
+            let x: Vec<f64> = (0..N).map(|row| table[row * width + at]).collect();
+            let limit = limits.iter().find(|(joint, _)| joint == name).and_then(|(_, effort)| *effort);
+            of_signal(&x, what == "position", limit.filter(|_| what == "force"))
+        });
+        let mut joints = Vec::new();
+        for (Spikes { usual, bound, rows }, (q, j, name)) in found.into_iter().zip(&axes) {
+            let is_few = usual > 0.0 && rows.len() as f64 <= MOST * N as f64 && (what == "force" || are_apart(&rows));
+            let Some(&first) = rows.first().filter(|_| is_few) else { continue };
+            let value = if what == "position" { table[first * nq + q] } else { table[first * n + j] };
+            joints.push(format!(
+                "{name} in {} of {N} rows, first {value:.3e} at {}, where 99 % are below {usual:.3e} and spikes above \
+                 {bound:.3e}",
+                rows.len(),
                 at(log, first)
-            ),
-        ));
-        spikes.iter().for_each(|&row| is_out[row] = true);
+            ));
+            rows.iter().for_each(|&row| is_out[row] = true);
+        }
+        if let Some((first, more)) = joints.split_first() {
+            let of = if what == "position" { ", from the median" } else { "" };
+            let others = if more.is_empty() { String::new() } else { format!(", and {} other joints", more.len()) };
+            let text = format!(
+                "{}: the {what} jumps far away for a moment: {first}{of}{others}: an error of the sensor or its \
+                 transmission; these rows are left out",
+                log.name
+            );
+            findings.push(Finding::warning("spike", text));
+        }
     }
     if is_out.contains(&true) {
         log.to_mut().keep(&|row| !is_out[row]);
     }
+}
+
+fn of_signal(x: &[f64], is_centered: bool, limit: Option<f64>) -> Spikes {
+    let middle = if is_centered { quantile(x.to_vec(), 0.5) } else { 0.0 };
+    let size = |row: usize| (x[row] - middle).abs();
+    let usual = quantile((0..x.len()).map(size).collect(), 0.99);
+    let bound = match limit.filter(|limit| *limit > 0.0 && usual <= 2.0 * limit) {
+        Some(limit) => (ABOVE_USUAL * usual).min(ABOVE_LIMIT * limit).max(limit),
+        None => ABOVE_USUAL * usual,
+    };
+    let rows: Vec<usize> = (0..x.len()).filter(|&row| size(row) > bound).collect();
+    Spikes { usual, bound, rows }
+}
+
+/// Whether few of the rows follow each other.
+fn are_apart(rows: &[usize]) -> bool {
+    rows.windows(TOGETHER + 1).all(|run| run[TOGETHER] - run[0] > TOGETHER)
+}
+
+/// The numbers without spikes.
+pub fn without(x: Vec<f64>) -> Vec<f64> {
+    let Spikes { usual, rows, .. } = of_signal(&x, true, None);
+    if usual == 0.0 || !are_apart(&rows) || rows.len() as f64 > MOST * x.len() as f64 {
+        return x;
+    }
+    (0..x.len()).filter(|row| rows.binary_search(row).is_err()).map(|row| x[row]).collect()
 }

@@ -25,15 +25,20 @@ pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
     });
     for (Turns { rows, offsets, wraps, first, jump, usual }, (q, _, name)) in found.into_iter().zip(axes) {
         if let Some((row, step)) = jump {
-            findings.push(Finding::fault(
-                "position_jump",
-                format!(
-                    "{}: the position of {name} jumps by {step:.4} at {}, other steps are below {usual:.1e}: an encoder's \
-                     error, or logs put together; cut the log there",
-                    log.name,
-                    at(log, row)
+            let what = format!("{}: the position of {name} jumps by {step:.4} at {}", log.name, at(log, row));
+            findings.push(match (step.abs() - 360.0).abs() < (FAST * usual).min(180.0) {
+                true => Finding::fault(
+                    "unit",
+                    format!("{what}, a turn in degrees, expected rad; name the columns q1_deg, qd1_deg/s"),
                 ),
-            ));
+                false => Finding::fault(
+                    "position_jump",
+                    format!(
+                        "{what}, other steps are below {usual:.1e}: an encoder's error, or logs put together; cut the log \
+                         there"
+                    ),
+                ),
+            });
         }
         let Some(first) = first else { continue };
         findings.push(Finding::note(
@@ -83,7 +88,8 @@ impl Turns {
             let (row, next) = (found.rows[k], found.rows[k + 1]);
             let back = step - TAU * (step / TAU).round();
             let is_next = log.t[next] - log.t[row] < 5.0 * time.max(f64::MIN_POSITIVE);
-            if may_turn && step.abs() > PI && back.abs() <= (FAST * usual).max(0.05) {
+            let is_one_turn = step.abs() > PI && step.abs() < 3.0 * PI && step.abs() > RARE * usual;
+            if may_turn && is_one_turn && back.abs() <= (FAST * usual).max(0.05) {
                 offset += back - step;
                 found.wraps += 1;
                 found.first.get_or_insert(next);
@@ -98,3 +104,6 @@ impl Turns {
 
 /// A step back after a wrap is at most this many usual ones.
 const FAST: f64 = 10.0;
+
+/// A wrap is larger than this many usual steps: those of degrees may be whole turns.
+const RARE: f64 = 2.0;

@@ -137,8 +137,7 @@ impl Samples {
 /// # Errors
 /// As [`Log::check`], and [`Error::TooShort`] if no run is long enough for the filter.
 pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Vec<Finding>), Error> {
-    let (log, mut findings) = mend(model, log)?;
-    let log = log.as_ref();
+    let (mut log, mut findings) = mend(model, log)?;
     if findings.iter().any(|finding| finding.level == Level::Fault && finding.code.contains("clock")) {
         return Err(Error::of_clock(&findings)); // no signal can be filtered without its times
     }
@@ -153,22 +152,26 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
         Cutoff::None => None,
         Cutoff::Hz(f) => Some(f),
         Cutoff::Automatic => {
-            let (f, why) = cutoff::automatic(model, log, &rows, filter);
+            let (f, why) = cutoff::automatic(model, &log, &rows, filter);
             findings.push(Finding::note("cutoff", format!("{}: the cut-off is {f:.3} Hz, {why}", log.name)));
             Some(f)
         }
     };
     let low_pass = cutoff.map(|f| LowPass::new(filter.order, f, rate)).transpose()?;
-    rows.bridge(log, cutoff, &mut findings);
-    // what the ends of a filtered run are worth: two periods of the cut-off
+    rows.bridge(&log, cutoff, &mut findings);
     let two_periods = cutoff.map_or(0.0, |f| (2.0 * rate / f).ceil());
-    let trim = two_periods as usize;
+    let trim = two_periods as usize; // what the ends of a filtered run are worth
     let stride = stride(rows.runs.iter().map(Vec::len).sum(), rate, cutoff);
     if stride > 1 {
         let what =
             format!("{}: one of {stride} filtered rows is fitted, {:.0} a second", log.name, rate / stride as f64);
         findings.push(Finding::note("thinned", format!("{what}: the filter leaves nothing between them")));
     }
+    if let Some(finding) = velocities::accelerations(model, &log, &rows, low_pass.as_ref(), trim) {
+        findings.push(finding);
+        log.to_mut().ddtheta = None;
+    }
+    let log = log.as_ref();
     let mut samples = Samples {
         rate: rate / stride as f64,
         cutoff,

@@ -1,6 +1,6 @@
 //! A log of any format.
 
-use crate::failure::{Failure, Result};
+use crate::failure::{self, Failure, Result};
 use crate::recogniser::{Force, IS_CURRENT, Request, TARGET};
 use crate::tables::join::join;
 use crate::tables::samples::{LockedRange, Row, Samples};
@@ -66,7 +66,12 @@ pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Ro
     let target = samples.tables.remove(TARGET).filter(|_| is_flat);
     let (dtheta, ddtheta) = (samples.tables.remove("dtheta"), samples.tables.remove("ddtheta"));
     let wrenches = samples.tables.into_iter().filter(|(name, _)| name == "wrench" || name.starts_with("wrench_"));
-    let wrenches = wrenches.map(|(table, rows)| Ok((frame_of(&name, &table, model)?, rows))).collect::<Result<_>>()?;
+    let wrenches: Vec<_> =
+        wrenches.map(|(table, rows)| Ok((frame_of(&name, &table, model)?, rows))).collect::<Result<_>>()?;
+    for (frame, _) in &wrenches {
+        let frame = model.frame_name(*frame);
+        failure::note(&format!("{name}: the columns m_x … f_z are the wrench that {frame} applies to its environment"));
+    }
     Ok((Log { name, t, theta, dtheta, ddtheta, tau, target, wrenches, is_time_certain, ..Log::default() }, columns))
 }
 

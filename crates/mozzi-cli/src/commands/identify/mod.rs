@@ -185,6 +185,11 @@ pub fn run(arguments: &IdentifyArguments) -> Result<String> {
         let (log, _) = read_log(file, &model, &given)?;
         let (errors, _, findings) = found.validate(&log, &options.filter)?;
         judged.findings.extend(findings);
+        if let Some(same) = logs.iter().find(|fitted| fitted.is_same(&log)) {
+            let text =
+                format!("--validate {file}: it holds the rows of {}, which were fitted: no other log", same.name);
+            judged.findings.push(Finding::warning("same_log", text));
+        }
         validations.push((file.clone(), errors));
     }
     let (robot, more) = describe(&found.setup.columns, &found.estimates.consistent.x, whole.description())?;

@@ -3,20 +3,27 @@
 use super::{Family, MEANINGS, Search};
 use crate::failure::Result;
 use crate::recogniser::reading::Entry;
-use crate::recogniser::word::{TAU, THETA};
+use crate::recogniser::word::{DDTHETA, DTHETA, TAU, THETA};
 use crate::recogniser::{Column, GROUPS, columns, endings};
 
 impl Search<'_> {
     /// The columns of a family by entry; None if it has none of the robot's joints.
     pub(super) fn entries_of(&self, group: usize, family: &Family) -> Result<Option<Vec<Option<Column>>>> {
         let names = self.names(group);
-        let base = self.base(group, family, names.len())?;
+        let order = self.numbers_of_order();
+        let base = if order.is_some() { 0 } else { self.base(group, family, names.len())? };
         let mut found: Vec<Option<Column>> = vec![None; names.len()];
         let mut foreign: Vec<&str> = Vec::new();
         for (column, reading) in family {
             let k = match &reading.entry {
                 Entry::Known(k) => *k,
-                Entry::Index(k) => *k - base,
+                Entry::Index(k) => match &order {
+                    None => *k - base,
+                    Some(order) => match order.iter().position(|number| number == k) {
+                        Some(k) => k,
+                        None => continue,
+                    },
+                },
                 Entry::Name(name) => {
                     foreign.push(name);
                     continue;
@@ -37,6 +44,11 @@ impl Search<'_> {
                 return Err(self.twice(first, *column, &remedy));
             }
         }
+        // those of a sensor or a base: `acc_x`
+        let may_be_others = group == DDTHETA || group == DTHETA && foreign.len() != names.len();
+        if found.iter().all(Option::is_none) && may_be_others {
+            return Ok(None);
+        }
         if found.iter().all(Option::is_none) && (foreign.is_empty() || group != THETA) {
             return match foreign.is_empty() {
                 true => Ok(None),
@@ -49,6 +61,12 @@ impl Search<'_> {
         let optional = if group == TAU { self.model.base().velocities() } else { 0 };
         self.check_whole(group, &found, optional)?;
         Ok(Some(found))
+    }
+
+    /// The numbers of `--order 2,0,1`.
+    fn numbers_of_order(&self) -> Option<Vec<usize>> {
+        let order = self.request.order;
+        (!order.is_empty()).then(|| order.iter().map(|name| name.parse().ok()).collect())?
     }
 
     /// 0 or 1, from which the numbers are complete.
@@ -69,6 +87,9 @@ impl Search<'_> {
         if is_from(1) || lowest >= 1 && highest <= count {
             return Ok(1); // what is missing is named below
         }
+        if lowest == 0 && highest < count && (0..=highest).all(holds) {
+            return Ok(0); // likewise
+        }
         if highest >= count && !(0..=count).all(holds) && lowest >= 1 {
             // mozzi's own form of the error
             return Err(self.wrong(&format!(
@@ -80,9 +101,13 @@ impl Search<'_> {
             )));
         }
         let missing: Vec<String> = (0..=count).filter(|&k| !holds(k)).map(|k| k.to_string()).collect();
-        let flag = if self.request.has_flags { "; --order gives the numbers in the robot's order" } else { "" };
+        let first_numbers = || (lowest..).filter(|&k| holds(k)).take(count).map(|k| k.to_string()).collect::<Vec<_>>();
+        let flag = match self.request.has_flags && numbers.len() >= count {
+            true => format!("; --order {} takes these, in the robot's order", first_numbers().join(",")),
+            false => String::new(),
+        };
         let why = match missing.is_empty() {
-            true => format!("{lowest} to {highest} are there, one more than the robot has joints"),
+            true => format!("{lowest} to {highest} are there, more than the robot has joints"),
             false => format!("without {}", missing.join(", ")),
         };
         Err(self.wrong(&format!(

@@ -222,6 +222,15 @@ impl Search<'_> {
                     }
                 },
             };
+            if let Entry::Name(text) = &read.entry
+                && let Some((_, inner)) = text.split_once(['[', '('])
+                && inner.chars().any(char::is_alphabetic)
+            {
+                return Err(self.wrong(&format!(
+                    "column {} (`{name}`): the unit `{inner}` is not known, expected such as rad, deg, deg/s, N m",
+                    column + 1
+                )));
+            }
             let motors = |part: &str| part.starts_with("theta[") || part.starts_with("dtheta[");
             if is_franka && name.trim().rsplit('.').next().is_some_and(motors) {
                 read.kind.side = 2;
