@@ -53,7 +53,7 @@ fn another_fit_reveals_mistakes() {
     let n = model.n();
     let turned = edited(&log, n, |theta, dtheta, tau| [theta, dtheta, tau].into_iter().for_each(|x| x[4] = -x[4]));
     assert!(codes(&model, &turned, 8.0).contains(&"sign"));
-    let zero = edited(&log, n, |theta, _, _| theta[1] += 0.2);
+    let zero = edited(&log, n, |theta, _, _| theta[2] += 0.5);
     assert!(codes(&model, &zero, 8.0).contains(&"offset"));
     let in_mN_m = edited(&log, n, |_, _, tau| tau[5] *= 1e3);
     assert!(codes(&model, &in_mN_m, 8.0).contains(&"limits"));

@@ -2,10 +2,12 @@
 
 use super::array::tuple;
 use super::format::Format;
+use super::join::join;
 use super::npy::Header;
 use super::precision::Precision;
 use super::samples::{Samples, columns_of};
 use super::{How, read};
+use crate::bag::is_bag;
 use crate::failure::{Failure, Result};
 use crate::input::Input;
 use crate::numbers::WRENCH;
@@ -40,6 +42,9 @@ impl<T: Precision> States<T> {
             },
             _ => read::read(file, model)?,
         };
+        if is_bag(file) {
+            join(&mut samples, model)?; // an arm's joints may come in several messages
+        }
         let missing = |samples: &Samples, name: &str| {
             let what = match format {
                 Format::Npz => format!("array `{name}`"),

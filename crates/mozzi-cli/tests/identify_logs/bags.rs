@@ -97,6 +97,7 @@ fn files_of_sqlite_that_are_no_bags_say_so() {
 #[cfg(feature = "mcap")]
 mod mcap_files {
     use super::*;
+    use crate::common::mozzi;
     use std::collections::BTreeMap;
 
     /// Joint names with positions, velocities and efforts.
@@ -177,6 +178,10 @@ mod mcap_files {
             vec![(t, vec!["joint1"], x.map(|x| vec![x[0]])), (t, vec!["joint2"], x.map(|x| vec![x[1]]))]
         };
         v.check("split.mcap", one(&split), &[], &Same);
+        let parts = v.folder.join("split.mcap");
+        let computed = mozzi(&["compute", ROBOT, "mass-matrix", "--in", parts.to_str().expect("text")]);
+        let notes = String::from_utf8_lossy(&computed.stderr);
+        assert!(computed.status.success() && !notes.contains("NaN"), "{notes}");
         let turns = |k: usize, t: i64, x: [[f64; 2]; 3]| -> Vec<Message> {
             match k % 2 {
                 0 => plain(k, t, x),

@@ -162,6 +162,17 @@ impl Evidence {
         Evidence { pattern: pattern.clone(), forces, unknowns, independent }
     }
 
+    /// All equations of a few samples.
+    ///
+    /// # Errors
+    /// [`Error::Model`].
+    pub fn of_samples(columns: &Columns<'_>, pattern: &Pattern, samples: &Samples) -> Result<Self, Error> {
+        let mut forces: Vec<Triangle> = pattern.0.iter().map(|of| Triangle::new(of.len())).collect();
+        fill(columns, pattern, samples, 0..samples.count(), None, &mut forces)?;
+        let (pattern, independent) = (pattern.clone(), samples.independent());
+        Ok(Evidence { pattern, forces, unknowns: columns.count(), independent })
+    }
+
     /// Root mean square of each force.
     pub fn rms(&self) -> Vec<f64> {
         self.forces.iter().map(|force| (force.square / force.rows.max(1) as f64).sqrt()).collect()

@@ -1,5 +1,6 @@
 //! Mistakes that may have been made in a log, each undone in a sample.
 
+use crate::mend::is_revolute;
 use core::f64::consts::{FRAC_PI_2, PI};
 use mozzi::{Model, Vec3};
 
@@ -23,7 +24,7 @@ pub enum Mistake {
     ForceScale(usize, f64),
     Degrees,
     JointDegrees(usize),
-    /// The positions of a joint lack this, rad or m.
+    /// The positions of a revolute joint lack this, rad.
     Offset(usize, f64),
     /// Forces are shares of the effort limits, this many to one.
     Rated(f64),
@@ -40,9 +41,11 @@ impl Mistake {
         let n = model.n();
         let mut all = Vec::new();
         let quarters = [FRAC_PI_2, -FRAC_PI_2, PI];
-        for a in 0..n {
+        for (a, name) in model.velocity_names().enumerate() {
             all.extend([Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a)]);
-            all.extend(quarters.map(|offset| Mistake::Offset(a, offset)));
+            if is_revolute(model, name) {
+                all.extend(quarters.map(|offset| Mistake::Offset(a, offset)));
+            }
             if most[a] > TURN {
                 all.push(Mistake::JointDegrees(a));
             }

@@ -2,9 +2,10 @@
 //! the log is fitted again with each of them undone.
 
 use super::mistake::Mistake;
-use crate::compress::{Compressed, Evidence};
+use crate::compress::Evidence;
 use crate::cores::each;
 use crate::estimate::least_squares::weighted_by;
+use crate::mend::is_revolute;
 use crate::setup::Setup;
 use crate::signals::Samples;
 use crate::{Errors, Finding, Identification};
@@ -13,7 +14,10 @@ use mozzi::Freedom;
 /// Fits with a smaller error over force are not questioned.
 const GOOD: f64 = 0.02;
 
-/// A mistake is reported if the fit without it leaves less than this part of the errors (geometric mean).
+/// A mistake is reported if the logarithms of the joints' errors fall by this much in all without it,
+const CLEAR: f64 = 2.0;
+
+/// and those of one joint to less than this part.
 const HALF: f64 = 0.5;
 
 /// Samples that are fitted.
@@ -26,7 +30,7 @@ const MOST_JOINTS: usize = 12;
 const UNITS: [f64; 6] = [1e-3, 1e-2, 0.1, 10.0, 100.0, 1000.0];
 
 /// The first step of the search for an offset, rad, and the number of steps.
-const OFFSET: (f64, usize) = (0.15, 3);
+const OFFSET: (f64, usize) = (0.15, 5);
 
 /// A warning about the mistake without which a log is explained far better.
 pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option<Finding> {
@@ -42,9 +46,10 @@ pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option
     let sigma = &found.estimates.least_squares.sigma;
     let fit = |mistake: &Mistake| errors(setup, &undone(&few, mistake, n), sigma);
     let as_it_is = fit(&Mistake::None)?;
-    let share = |errors: &[f64]| {
-        let ratios = errors.iter().zip(&as_it_is).map(|(a, b)| (a / b).max(1e-6).ln());
-        (ratios.sum::<f64>() / n as f64).exp()
+    // Σ_j log of the part of joint j's errors that is left; 0 if no joint's is clearly smaller
+    let left = |errors: Vec<f64>| {
+        let ratios = errors.iter().zip(&as_it_is).map(|(a, b)| (a / b).max(1e-6));
+        if ratios.clone().any(|ratio| ratio < HALF) { ratios.map(f64::ln).sum() } else { 0.0 }
     };
     let mut all: Vec<Mistake> =
         (0..n).flat_map(|a| [Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a)]).collect();
@@ -54,18 +59,20 @@ pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option
         all.extend(Mistake::swaps(n));
     }
     let cost = few.count() * n * setup.columns.count();
-    let shares = each(all.len(), all.len() * cost, |k| fit(&all[k]).map_or(1.0, |errors| share(&errors)));
-    let offsets = each(n, n * cost, |j| {
-        let mistake = offset(j, &as_it_is, &fit);
-        let left = fit(&mistake).map_or(1.0, |errors| share(&errors));
-        (mistake, left)
+    let sums = each(all.len(), all.len() * cost, |k| fit(&all[k]).map_or(0.0, left));
+    let names: Vec<&str> = model.velocity_names().collect();
+    let revolute: Vec<usize> = (0..n).filter(|&j| is_revolute(model, names[j])).collect();
+    let offsets = each(revolute.len(), revolute.len() * cost, |k| {
+        let mistake = offset(revolute[k], &as_it_is, &fit);
+        let least = fit(&mistake).map_or(0.0, left);
+        (mistake, least)
     });
-    let tried = all.into_iter().zip(shares).chain(offsets);
-    let (best, least) = tried.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, least)| *least < HALF)?;
+    let tried = all.into_iter().zip(sums).chain(offsets);
+    let (best, least) = tried.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, least)| *least < -CLEAR)?;
     let text = format!(
         "{log}: {}; a fit without this mistake leaves {:.0} % of the errors (geometric mean)",
         best.text(model),
-        100.0 * least
+        100.0 * (least / n as f64).exp()
     );
     Some(Finding::warning(best.code(), text))
 }
@@ -114,8 +121,7 @@ fn undone(samples: &Samples, mistake: &Mistake, n: usize) -> Samples {
 
 /// The errors of a fit by least squares with the weights of the whole log's, each relative to its force.
 fn errors(setup: &Setup<'_>, samples: &Samples, sigma: &[f64]) -> Option<Vec<f64>> {
-    let compressed = Compressed::new(&setup.columns, &setup.pattern, samples, None).ok()?;
-    let evidence = Evidence::new(&setup.pattern, setup.columns.count(), &[compressed], |_, _| true);
+    let evidence = Evidence::of_samples(&setup.columns, &setup.pattern, samples).ok()?;
     let x = weighted_by(&evidence, &setup.base, sigma);
     Some(evidence.rmse(&x).into_iter().zip(evidence.rms()).map(|(e, force)| e / force.max(1e-12)).collect())
 }
@@ -138,7 +144,9 @@ fn offset(j: usize, usual: &[f64], fit: &dyn Fn(&Mistake) -> Option<Vec<f64>>) -
         if next < least {
             (at, least) = (at + change, next);
         }
-        step /= 4.0;
+        if change.abs() < step {
+            step /= 4.0;
+        }
     }
     Mistake::Offset(j, at)
 }

@@ -8,6 +8,7 @@ mod stuck;
 mod wrap;
 
 use crate::{Error, Finding, Log};
+use mozzi::model::description::JointKind;
 use mozzi::{Freedom, Model};
 use std::borrow::Cow;
 
@@ -35,6 +36,12 @@ fn axes(model: &Model) -> Vec<(usize, usize, String)> {
     let names: Vec<&str> = model.velocity_names().collect();
     let one = model.places().iter().filter(|place| place.freedom == Freedom::One).cloned();
     one.map(|place| (place.q, place.j, names[place.j].to_string())).collect()
+}
+
+/// Whether a joint turns without moving along its axis.
+pub(crate) fn is_revolute(model: &Model, name: &str) -> bool {
+    let joint = model.joints().find(|joint| joint.name == name);
+    joint.is_some_and(|joint| matches!(&joint.kind, JointKind::Screw(a) if !a.is_prismatic() && a.pitch() == 0.0))
 }
 
 /// The value below which this share of the numbers lies; 0 without numbers.

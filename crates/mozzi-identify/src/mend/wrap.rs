@@ -1,10 +1,9 @@
 //! Positions that wrap at a half or a whole turn, and positions that jump.
 
-use super::{at, axes, quantile};
+use super::{at, axes, is_revolute, quantile};
 use crate::cores::each;
 use crate::{Finding, Log};
 use mozzi::Model;
-use mozzi::model::description::JointKind;
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
@@ -14,14 +13,10 @@ const JUMP: (f64, f64) = (15.0, 0.05);
 /// Adds whole turns, so that revolute joints turn continuously; other jumps are faults.
 pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
     let nq = model.nq();
-    let joints: Vec<_> = model.joints().collect();
     let axes = axes(model);
     let found = each(axes.len(), log.theta.len(), |k| {
         let (q, _, name) = &axes[k];
-        let turns = joints.iter().find(|joint| joint.name == *name).is_some_and(
-            |joint| matches!(&joint.kind, JointKind::Screw(axis) if !axis.is_prismatic() && axis.pitch() == 0.0),
-        );
-        Turns::of(log, *q, nq, turns)
+        Turns::of(log, *q, nq, is_revolute(model, name))
     });
     for (Turns { rows, offsets, wraps, first, jump, usual }, (q, _, name)) in found.into_iter().zip(axes) {
         if let Some((row, step)) = jump {
