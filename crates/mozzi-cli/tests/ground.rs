@@ -252,3 +252,41 @@ fn dry_friction_holds_talos_in_free_fall() {
         }
     }
 }
+
+/// The head of example-robot-data's iCub has hardly any inertia about its neck: no correction may turn it by anything.
+#[test]
+fn a_head_without_inertia_stays_on() {
+    let Ok(robots) = std::env::var("MOZZI_ROBOTS") else {
+        eprintln!("skipped: MOZZI_ROBOTS does not name the folder of example-robot-data");
+        return;
+    };
+    let icub = format!("{robots}/icub_description/robots/icub.urdf");
+    let mut start =
+        "0.9988948728277206,0.02845483687467218,-0.002800124035531484,0.03730301063337171,0,0,0.8975002688521863"
+            .to_string();
+    (0..32).for_each(|k| start += if [18, 28].contains(&k) { ",0.0959931" } else { ",0" });
+    let table = folder("icub").join("fall.csv");
+    let out = table.to_str().expect("text");
+    let output = mozzi(&[
+        "simulate",
+        &icub,
+        "--floating",
+        "--ground",
+        "--theta",
+        &start,
+        "--time",
+        "1",
+        "--torque",
+        "zero",
+        "--out",
+        out,
+    ]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = std::fs::read_to_string(&table).expect("a table");
+    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+    for row in text.lines().skip(1) {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        let positions = names.iter().zip(&cells).filter(|(name, _)| name.starts_with("theta_"));
+        assert!(positions.clone().all(|(_, x)| x.abs() < 10.0), "{:?}", positions.collect::<Vec<_>>());
+    }
+}

@@ -98,6 +98,43 @@ fn a_held_pose_holds() {
     assert!((other[0] - 0.6).abs() < 0.02, "{other:?}");
 }
 
+/// Gains and biases of MuJoCo 4.0.0 for an element after a default of another kind.
+#[test]
+fn a_default_of_one_kind_is_not_that_of_another() {
+    for (default, element, gain, bias) in [
+        ("<position kp='7' kv='3'/>", "position", [7.0, 0.0, 0.0], [0.0, -7.0, -3.0]),
+        ("<position kp='7' kv='3'/>", "velocity", [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ("<position kp='7' kv='3'/>", "motor", [1.0, 0.0, 0.0], [0.0; 3]),
+        ("<position kp='7' kv='3'/>", "general", [7.0, 0.0, 0.0], [0.0, -7.0, -3.0]),
+        ("<velocity kv='2'/>", "position", [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]),
+        ("<velocity kv='2'/>", "general", [2.0, 0.0, 0.0], [0.0, 0.0, -2.0]),
+        ("<general gainprm='5' biasprm='1 -4 -3' biastype='affine'/>", "position", [5.0, 0.0, 0.0], [0.0, -5.0, -3.0]),
+        ("<general gainprm='5' biasprm='1 -4 -3' biastype='affine'/>", "velocity", [5.0, 0.0, 0.0], [0.0, 0.0, -5.0]),
+        ("<damper kv='2'/>", "damper", [0.0, 0.0, -2.0], [0.0; 3]),
+    ] {
+        let text = format!(
+            "<mujoco><default>{default}</default><worldbody><body><joint name='h'/><geom size='1'/></body></worldbody>\
+             <actuator><{element} joint='h'/></actuator></mujoco>"
+        );
+        let found = actuation(&text);
+        let one = found.actuators[0].as_ref().expect(element);
+        assert_eq!((one.gain, one.bias), (gain, bias), "{default} {element}");
+    }
+}
+
+#[test]
+fn groups_that_are_disabled_do_not_act() {
+    let text = "<mujoco><option actuatorgroupdisable='3'/><worldbody><body><joint name='h' actuatorfrcrange='-.3 .2'/>\
+                <geom size='1'/></body></worldbody><tendon><fixed name='t' actuatorfrcrange='-1 1'><joint joint='h' \
+                coef='1'/></fixed></tendon><actuator><motor joint='h'/><motor joint='h' group='3'/><motor name='u' \
+                tendon='t'/></actuator></mujoco>";
+    let found = actuation(text);
+    assert_eq!(found.actuators.iter().map(Option::is_some).collect::<Vec<_>>(), [true, false, false]);
+    assert!(found.left_out[0].contains("`u`: drives tendon `t`, which clamps its actuators' force"), "{found:?}");
+    let warnings = format!("{:?}", mozzi_urdf::parse("a.xml", text).expect("sound").warnings);
+    assert!(warnings.contains("an uneven bound of the actuators' force"), "{warnings}");
+}
+
 #[test]
 fn what_is_not_computed_is_named() {
     let text = "<mujoco><worldbody><body><joint name='h'/><geom size='1'/><site name='here'/><body><joint name='ball' \

@@ -77,8 +77,14 @@ const UNITS: [(&[&str], &str, Dimension, f64); 46] = [
     (&["deg/ms"], "deg/ms", Velocity, 1e3 * DEGREE),
 ];
 
+/// Longer texts are no units.
+const LONGEST: usize = 32;
+
 /// A unit by one of its spellings.
 pub fn unit(text: &str) -> Option<Unit> {
+    if text.len() > LONGEST {
+        return None; // every ending of a long name is tried
+    }
     let spelled: String = text.trim().to_lowercase().chars().filter(|c| !" *·⋅^".contains(*c)).collect();
     let spelled = spelled.trim_matches(['[', ']', '(', ')']).replace("_per_", "/").replace("_s", "/s").replace('_', "");
     let (_, name, dimension, factor) = UNITS.iter().find(|(all, ..)| all.contains(&spelled.as_str()))?;

@@ -113,3 +113,34 @@ fn axes_and_angles_that_are_read_otherwise() {
     let read_as_xyzw = SO3::from_quaternion(z, Vec3([w, x, y]));
     is_shown(&[(SLIDE, &rpy(read_as_xyzw))], "`slide` has its quaternion read in the order x y z w", true);
 }
+
+#[test]
+fn numbers_of_six_digits_are_rounded() {
+    is_shown(&[(SLIDE, r#"<origin xyz="0.3 0 0.0500002" rpy="0.1 0.6 -0.4"/>"#)], "`slide` is rounded in b.urdf", true);
+    is_shown(&[(r#"<mass value="1.5"/>"#, r#"<mass value="1.50001"/>"#)], "the inertia of `trolley` rounded", true);
+    let limit = compare_edited(CRANE, &[(r#"lower="-2""#, r#"lower="-2.0000001""#)]);
+    assert!(limit.text().contains("-2.0000001 instead of -2.0"), "{}", limit.text());
+}
+
+#[test]
+fn a_link_on_another_body_is_named() {
+    let edit = [(r#"type="continuous"><parent link="trolley"/>"#, r#"type="continuous"><parent link="jib"/>"#)];
+    is_shown(&edit, "`spin` is on `jib` in b.urdf, on `trolley` here", true);
+    // a frame without mass enters no force
+    let tool = r#"<joint name="t" type="fixed"><parent link="trolley"/><child link="tool"/></joint><link name="tool"/></robot>"#;
+    let with_tool = CRANE.replace("</robot>", tool);
+    let moved = compare_edited(
+        &with_tool,
+        &[(r#"type="fixed"><parent link="trolley"/>"#, r#"type="fixed"><parent link="jib"/>"#)],
+    );
+    assert!(moved.forces_agree() && !moved.agrees());
+    assert!(moved.text().contains("`t` is on `jib` in b.urdf"), "{}", moved.text());
+}
+
+#[test]
+fn the_mass_of_a_fixed_base_is_a_note() {
+    let heavy = r#"<link name="base"><inertial><mass value="4"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>"#;
+    let found = compare_edited(CRANE, &[(r#"<link name="base"/>"#, heavy)]);
+    assert!(found.agrees(), "{}", found.text());
+    assert!(found.text().contains("the base has 4 kg in b.urdf, 0 kg in a.urdf"), "{}", found.text());
+}

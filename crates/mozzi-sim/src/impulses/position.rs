@@ -24,6 +24,8 @@ const AT_LIMIT: f64 = 1e-11;
 /// it would for each row alone.
 const REGULAR: [f64; 5] = [1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
 const FARTHEST: f64 = 10.0;
+/// No correction moves a joint farther, rad or m.
+const AT_ONCE: f64 = 0.5;
 /// And relative to its largest entry: a row of a loop that holds anyway is rounding.
 const NOISE: f64 = 1e-14;
 
@@ -96,6 +98,9 @@ impl Impulses<'_> {
             }
             let (mut change, mut theta) = (J.tr_mul(&p), theta.to_vec());
             self.mass.divide(change.as_mut_slice());
+            if !(change.amax() <= AT_ONCE) {
+                return None; // a joint with hardly any inertia would turn by anything
+            }
             integrate(self.model, &mut theta, change.as_slice(), 1.0);
             let (open, errors) = self.open_rows(t, &theta);
             let left = size(&errors);

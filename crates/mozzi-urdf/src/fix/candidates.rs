@@ -56,6 +56,12 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
             return;
         }
         let G = inertial.inertia(&candidate.numbers);
+        // the mass is right where the other side has it, or where a smaller one would be that of air
+        let is_kept = twin.as_ref().is_some_and(|(.., twin)| (mass - twin.mass).abs() <= 0.01 * twin.mass);
+        let is_air = solid.is_some_and(|solid| !solid.may_weigh(new.mass));
+        if new.mass != mass && (is_kept || is_air) {
+            return;
+        }
         if !G.verdict().is_physical() || !is_fitting(G) && !is_alike(G) {
             return;
         }
@@ -158,6 +164,8 @@ fn all(inertial: &Inertial<'_>, old: SpatialInertia) -> Vec<Candidate> {
         (-3, -3, 0, "the mass is in g, and the moments are in g m²"),
         (-3, -6, 0, "the mass is in g, and the moments are in kg mm²"),
         (-3, -9, 0, "the mass is in g, and the moments are in g mm²"),
+        (0, 3, 0, "the moments are a thousandth of kg m²"),
+        (0, 6, 0, "the moments are a millionth of kg m²"),
         (0, 0, -3, "the centre of mass is in mm"),
         (0, -6, -3, "the centre of mass and the moments are in mm"),
         (-3, -9, -3, "everything is in g and mm"),

@@ -11,6 +11,8 @@ use std::path::Path;
 
 /// No solid is denser, kg/m³: osmium has 22,600.
 const DENSEST: f64 = 25_000.0;
+/// A repair does not leave a link lighter, kg/m³: a hollow shell of a robot has more.
+const LIGHTEST: f64 = 20.0;
 /// A shape that would be denser is no evidence for its link, kg/m³: a mass in g as one in kg gives at most 1000 times
 /// [`DENSEST`].
 const ABSURD: f64 = 3e7;
@@ -49,6 +51,11 @@ impl Solid {
     /// False for a dummy shape, such as a ball of 1 mm on a body of kilograms.
     pub fn can_have(&self, mass: f64) -> bool {
         mass / self.moments.size <= ABSURD
+    }
+
+    /// Whether a repair may give a link this mass.
+    pub fn may_weigh(&self, mass: f64) -> bool {
+        mass / self.moments.size >= LIGHTEST
     }
 
     /// The misfit of an inertia and the hull, uniformly filled with the same mass, in powers of ten. It is the largest

@@ -79,6 +79,11 @@ impl<'a> Model<'a> {
         let Some(mut actuation) = self.actuation.take() else { return };
         let given = item.element.attribute("name").map(|value| value.text.to_string());
         let name = given.unwrap_or_else(|| format!("actuator{}", actuation.actuators.len()));
+        if self.options.idle_groups.contains(&item.number("group", 0.0, cx)) {
+            actuation.actuators.push(None);
+            self.actuation = Some(actuation);
+            return;
+        }
         let found = self.actuator_of(&name, item, joints, cx);
         if let Err(why) = &found {
             actuation.left_out.push(format!("actuator `{}`: {why}, which is not computed", shown(&name)));
@@ -115,6 +120,9 @@ impl<'a> Model<'a> {
         } else if let Some(value) = tendon {
             let rotor = self.tree.rotors.iter().find(|rotor| rotor.name.given.as_deref() == Some(value.text));
             match rotor {
+                Some(rotor) if rotor.clamps => {
+                    return Err(format!("drives tendon `{}`, which clamps its actuators' force", shown(value.text)));
+                }
                 Some(rotor) if rotor.is_fixed => {
                     gears.extend(rotor.gears.iter().map(|one| (one.joint.clone(), gear * one.ratio)));
                 }

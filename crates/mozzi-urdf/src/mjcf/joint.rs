@@ -107,15 +107,14 @@ impl<'a> Model<'a> {
     }
 
     /// The largest force of the joint's actuators, if their ranges are symmetric.
-    fn effort(&self, item: &Item, cx: &mut Context) -> Option<f64> {
+    fn effort(&mut self, item: &Item, cx: &mut Context) -> Option<f64> {
         const NAME: &str = "actuatorfrcrange";
         let [low, high] = self.range(item, NAME, "actuatorfrclimited", cx)?;
         if !in_order(NAME, [low, high], item, cx) {
             return None;
         }
         if low != -high {
-            let span = item.value(NAME).map_or_else(|| item.element.span(), |value| value.span);
-            cx.leave_out("joint", NAME, span);
+            self.ignored.force(NAME, item, NAME, "an uneven bound of the actuators' force");
         }
         (low == -high && high > 0.0).then_some(high)
     }

@@ -94,6 +94,8 @@ pub(crate) struct Law {
     gain_type: String,
     bias_type: String,
     dynamics: String,
+    /// The kind whose parameters these are.
+    kind: String,
     /// A kind that is no shortcut for these parameters.
     other: Option<String>,
 }
@@ -107,6 +109,7 @@ impl Default for Law {
             gain_type: fixed,
             bias_type: none.clone(),
             dynamics: none,
+            kind: "general".to_string(),
             other: None,
         };
         law.gain[0] = 1.0;
@@ -115,9 +118,15 @@ impl Default for Law {
 }
 
 impl Law {
-    /// Takes over the attributes of an element, of any kind.
+    /// Takes over the attributes of an element. A default of one kind does not apply to another, but for `general`.
     pub fn apply(&mut self, element: &Element, cx: &mut Context) {
         let mut number = |name| element.number(name, cx);
+        if element.name() != "general" {
+            if self.kind != "general" && self.kind != element.name() {
+                *self = Law::default();
+            }
+            self.kind = element.name().to_string();
+        }
         self.other = None;
         match element.name() {
             "general" => {
@@ -134,12 +143,12 @@ impl Law {
                 overlay(&mut self.bias, element, "biasprm", cx);
             }
             "motor" => {
-                *self = Law::default();
+                *self = Law { kind: "motor".to_string(), ..Law::default() };
             }
             kind @ ("position" | "intvelocity") => {
                 let kp = number("kp").unwrap_or(self.gain[0]);
                 let (kv, ratio, constant) = (number("kv"), number("dampratio"), number("timeconst"));
-                (self.gain[0], self.bias[1]) = (kp, -kp);
+                (self.gain[0], self.bias[0], self.bias[1]) = (kp, 0.0, -kp);
                 // a positive number is a damping ratio
                 self.bias[2] = kv.map(|kv| -kv).or(ratio).unwrap_or(self.bias[2]);
                 self.types("fixed", "affine", if kind == "intvelocity" { "integrator" } else { "none" });
@@ -154,7 +163,7 @@ impl Law {
                 self.types("fixed", "affine", "none");
             }
             "damper" => {
-                let kv = number("kv").unwrap_or(0.0);
+                let kv = number("kv").unwrap_or(-self.gain[2]);
                 self.gain = [0.0; COUNT];
                 self.gain[2] = -kv;
                 self.types("affine", "none", "none");

@@ -5,6 +5,7 @@ use super::ignored::Ignored;
 use super::vocabulary;
 use crate::text::context::Context;
 use crate::text::element::Element;
+use crate::text::number::all_numbers;
 
 /// The options that mozzi uses.
 pub(crate) struct Options {
@@ -16,6 +17,8 @@ pub(crate) struct Options {
     /// Whether actuators act, and whether their controls are clamped.
     pub actuation: bool,
     pub clamps: bool,
+    /// Groups of actuators that do not act.
+    pub idle_groups: Vec<f64>,
 }
 
 impl Default for Options {
@@ -28,6 +31,7 @@ impl Default for Options {
             equality: true,
             actuation: true,
             clamps: true,
+            idle_groups: Vec::new(),
         }
     }
 }
@@ -45,6 +49,9 @@ impl Options {
             item.element.check_attributes(&vocabulary::OPTION, cx);
             let children = item.element.check_children(&vocabulary::OPTION, cx);
             options.gravity = item.vector::<3>("gravity", cx).unwrap_or(options.gravity);
+            if let Some(groups) = item.element.attribute("actuatorgroupdisable") {
+                options.idle_groups = all_numbers(groups.text).unwrap_or_default();
+            }
             for name in ["density", "viscosity"] {
                 if item.number(name, 0.0, cx) != 0.0 {
                     ignored.force("fluid", &item, name, "a fluid around the bodies");

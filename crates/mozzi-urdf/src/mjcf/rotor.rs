@@ -53,6 +53,7 @@ impl<'a> Model<'a> {
             is_fixed,
             is_refused: force.is_some(),
             is_limited,
+            clamps: item.element.attribute("actuatorfrcrange").is_some(),
             is_tied: false,
             place,
         });

@@ -76,6 +76,8 @@ pub(crate) struct Rotor {
     /// True if it is refused; the reason was reported.
     pub is_refused: bool,
     pub is_limited: bool,
+    /// True if it has an `actuatorfrcrange`.
+    pub clamps: bool,
     /// True if an equality ties it.
     pub is_tied: bool,
     pub place: Place,

@@ -61,10 +61,9 @@ pub(crate) const COMPILER: Vocabulary = Vocabulary {
     ..NOTHING
 };
 pub(crate) const OPTION: Vocabulary = Vocabulary {
-    attributes: &["gravity", "density", "viscosity"],
+    attributes: &["gravity", "density", "viscosity", "actuatorgroupdisable"],
     once: &["flag"],
     listed: &[
-        "actuatorgroupdisable",
         "apirate",
         "ccd_iterations",
         "ccd_tolerance",
@@ -365,6 +364,7 @@ pub(crate) const ACTUATOR: Vocabulary = Vocabulary {
         "forcerange",
         "inheritrange",
         "delay",
+        "group",
     ],
     ..NOTHING
 };

@@ -115,14 +115,13 @@ fn plugins_are_told_where_they_are_declared() {
 #[test]
 fn attributes_without_effect_are_listed() {
     let text = body!(
-        "<joint name='j' margin='1' actuatorfrcrange='-5 5' user='1'/><joint axis='1 0 0' actuatorfrcrange='-1 2'/><geom \
+        "<joint name='j' margin='1' actuatorfrcrange='-5 5' user='1'/><joint axis='1 0 0'/><geom \
          size='1' rgba='1 1 1 1' friction='1'/><geom size='1' rgba='1 1 1 1'/>"
     );
     for policy in [Policy::Default, Policy::Strict] {
         let robot = parse_with("a.xml", text, policy).expect("a model");
         let said: Vec<&str> = robot.unused.iter().map(|unused| unused.message()).collect();
-        let ignored =
-            ["joint: `margin`", "joint: `user`", "joint: `actuatorfrcrange`", "geom: `rgba`", "geom: `friction`"];
+        let ignored = ["joint: `margin`", "joint: `user`", "geom: `rgba`", "geom: `friction`"];
         assert_eq!(said, ignored.map(|what| format!("{what} is ignored")));
         assert!(robot.warnings.is_empty());
         let effort: Vec<Option<f64>> = robot.description.joints.iter().map(|joint| joint.limits.effort).collect();

@@ -69,6 +69,15 @@ fn published_faults_are_repaired() {
                 .replace("\"0.001\"", "\"1000\""),
             "units",
         ),
+        (
+            "moments are a thousandth",
+            SOUND
+                .replace("\"0.065\"", "\"0.000065\"")
+                .replace("\"0.05\"", "\"0.00005\"")
+                .replace("\"0.025\"", "\"0.000025\"")
+                .replace("\"0.001\"", "\"0.000001\""),
+            "units",
+        ),
         ("the mass is in g", with("\"6\"", "\"6000\""), "units"),
         ("the centre is in mm", with("0.02 0 0.15", "20 0 150"), "units"),
     ];

@@ -8,6 +8,8 @@ use mozzi::{Description, SE3, SpatialInertia};
 pub enum Change {
     Gravity([f64; 3]),
     Joint(String, Property),
+    /// A joint's other parent, with its place there.
+    Parent(String, String, SE3, JointKind),
     /// The inertias of these links.
     Inertia(Vec<(String, SpatialInertia)>),
     /// It enters no force here: limits, couplings, names.
@@ -55,6 +57,12 @@ impl Change {
             Change::Gravity(gravity) => robot.gravity = *gravity,
             Change::Joint(name, property) => {
                 robot.joints.iter_mut().filter(|joint| joint.name == *name).for_each(|joint| property.set(joint));
+            }
+            Change::Parent(name, parent, origin, kind) => {
+                robot.joints.iter_mut().filter(|joint| joint.name == *name).for_each(|joint| {
+                    joint.parent.clone_from(parent);
+                    (joint.origin, joint.kind) = (*origin, *kind);
+                });
             }
             Change::Inertia(links) => {
                 for (name, inertia) in links {

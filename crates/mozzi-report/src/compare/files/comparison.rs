@@ -3,6 +3,7 @@
 use super::cause::Cause;
 use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
+use super::number::shown;
 use super::{RobotFile, constraints, joints, merged, report, shapes};
 use crate::compare::Result;
 use crate::compare::constants::home;
@@ -78,6 +79,7 @@ pub fn compare_files(
     causes.extend(constraints::causes([&one, &two], &there, [&a.name, &b.name])?);
     let is_link = |robot: &mozzi::Description, name: &str| robot.links.iter().any(|link| link.name == name);
     notes.extend(shapes::notes([a, b], &|link| is_link(&one, link) && is_link(&two, link)));
+    notes.extend(base_masses([&one, &two], [a, b])?);
     let rows = states_of.names().len();
     if rows == 0 && !(matched.only_a.is_empty() && matched.only_b.is_empty()) {
         (causes, notes) = (Vec::new(), Vec::new()); // nothing was compared
@@ -101,6 +103,21 @@ pub fn compare_files(
         causes,
         notes,
     })
+}
+
+/// A note if the bases differ in mass, which no force shows while they are fixed.
+fn base_masses(robots: [&mozzi::Description; 2], files: [&RobotFile; 2]) -> Result<Option<String>> {
+    let mass = |robot: &mozzi::Description| -> Result<f64> {
+        let model = robot.clone().build()?;
+        let bodies = model.folded_links();
+        Ok(bodies.iter().filter(|body| body.joint.is_none()).flat_map(|body| &body.links).map(|(_, mass)| mass).sum())
+    };
+    let [x, y] = [mass(robots[0])?, mass(robots[1])?];
+    let differs = robots[0].base == mozzi::Base::Fixed && (x - y).abs() > 1e-5 * x.abs().max(y.abs());
+    Ok(differs.then(|| {
+        let [one, two] = files.map(|file| &file.name);
+        format!("the base has {} kg in {two}, {} kg in {one}: no force shows it while it is fixed", shown(y), shown(x))
+    }))
 }
 
 impl FilesComparison {

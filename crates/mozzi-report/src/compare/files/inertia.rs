@@ -85,6 +85,9 @@ fn forward(
     if let Some(why) = of_shapes(names, link, a, b, solid) {
         return Some(why);
     }
+    if let Some(why) = rounded(other, &of, a, b) {
+        return Some(why);
+    }
     let (mass, center) = (same_mass(a.m, b.m), near(a.c, b.c));
     if mass && center {
         // in the axes of the file, if both give the inertia in the same
@@ -131,6 +134,22 @@ fn forward(
         return Some(format!("{other} has another mass of `{link}`: {n} kg instead of {m} kg, with {one}'s moments"));
     }
     None
+}
+
+/// Numbers that agree to a part of 10⁴ were rounded, whatever else would explain their last digits.
+fn rounded(other: &str, of: &str, a: Body, b: Body) -> Option<String> {
+    const DIGITS_LEFT: f64 = 1e-4;
+    let most = size(a.I).max(size(b.I));
+    let reach = a.c.norm().max(b.c.norm());
+    let moments = entries(a.I).iter().zip(entries(b.I)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+    let worst = [
+        (a.m - b.m).abs() / a.m.abs().max(b.m.abs()),
+        if reach > 0.0 { (a.c - b.c).norm() / reach } else { 0.0 },
+        if most > 0.0 { moments / most } else { 0.0 },
+    ];
+    let worst = worst.into_iter().fold(0.0, f64::max);
+    (worst > 0.0 && worst <= DIGITS_LEFT)
+        .then(|| format!("{other} has the {of} rounded: its numbers differ by up to {worst:.0e} of the largest"))
 }
 
 fn same_mass(a: f64, b: f64) -> bool {
@@ -180,6 +199,7 @@ fn of_moments([one, other]: [&str; 2], of: &str, a: Body, b: Body, axes: [Option
         let verdict = |body: Body| SpatialInertia::new(body.m, body.c, body.I).verdict().principal_moments;
         let fits = |[p, q, r]: [f64; 3]| p >= 0.0 && p + q >= r * (1.0 - 1e-9);
         match (fits(verdict(a)), fits(verdict(b))) {
+            (true, false) if size(b.I) == 0.0 => "",
             (true, false) if verdict(b)[0] < 0.0 => ": a principal moment is negative, which no body can have",
             (true, false) => ": no body can have it, since the largest principal moment exceeds the sum of the others",
             _ => "",

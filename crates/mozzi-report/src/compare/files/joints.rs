@@ -2,7 +2,7 @@
 
 use super::cause::{Cause, Change, Property};
 use super::matching::Matched;
-use super::number::{Angle, reason, same, shown, ten};
+use super::number::{Angle, instead, reason, same, shown, ten};
 use super::place::Places;
 use crate::compare::Result;
 use mozzi::Description;
@@ -33,7 +33,7 @@ pub fn causes(matched: &Matched, other: &str) -> Result<Vec<Cause>> {
             let why = if what == "armature" { gear(x, y).or_else(unit) } else { unit() };
             let has_reason = why.is_some();
             let why = why.unwrap_or_else(|| "differs".to_string());
-            let sentence = format!("{what} of `{}` {why} in {other}: {} instead of {}", joint.name, shown(y), shown(x));
+            let sentence = format!("{what} of `{}` {why} in {other}: {}", joint.name, instead(x, y));
             let change = Change::Joint(joint.name.clone(), make(y));
             causes.push(Cause::new(kind(what), &joint.name, sentence, has_reason, change));
         }
@@ -95,11 +95,7 @@ pub fn silent(a: &Description, b: &Description, names: &dyn Fn(&str) -> String, 
                     let why = if y == 0.0 { Some("is 0".to_string()) } else { unit() };
                     let has_reason = why.is_some();
                     let why = why.unwrap_or_else(|| "differs".to_string());
-                    add(
-                        "limits",
-                        format!("{subject} {why} in {other}: {} instead of {}", shown(y), shown(x)),
-                        has_reason,
-                    );
+                    add("limits", format!("{subject} {why} in {other}: {}", instead(x, y)), has_reason);
                 }
                 _ => {}
             }

@@ -7,6 +7,17 @@ pub fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
 }
 
+/// Numbers of five digits, after rounding.
+const ROUNDED: f64 = 2e-5;
+
+/// `new instead of old`, with as many digits as tell them apart.
+pub fn instead(old: f64, new: f64) -> String {
+    match (shown(old), shown(new)) {
+        (old_text, new_text) if old_text == new_text => format!("{new:?} instead of {old:?}"),
+        (old, new) => format!("{new} instead of {old}"),
+    }
+}
+
 /// How a number's unit contains an angle.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Angle {
@@ -27,6 +38,9 @@ pub fn reason(a: f64, b: f64, angle: Angle) -> Option<String> {
         return Some("appears".to_string());
     }
     let ratio = b / a;
+    if (ratio - 1.0).abs() <= ROUNDED {
+        return Some("is rounded".to_string());
+    }
     if same(ratio, -1.0) {
         return Some("has the other sign".to_string());
     }

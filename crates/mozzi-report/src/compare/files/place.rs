@@ -56,6 +56,15 @@ impl<'d> Places<'d> {
         let (origins, axes) =
             (same_place(a.origin, b.origin), same_screw(screw(a.kind, identity), screw(b.kind, identity)));
         let (type_a, type_b) = (a.kind.name(), b.kind.name());
+        if self.is_carried_elsewhere(a, b) {
+            let [here, there] = [&a.parent, &b.parent];
+            let sentence = format!("`{}` is on `{there}` in {other}, on `{here}` here", a.name);
+            let change = match self.robots[0].links.iter().any(|link| link.name == *there) {
+                true => Change::Parent(a.name.clone(), there.clone(), b.origin, b.kind),
+                false => Change::NoForce,
+            };
+            return Some(Cause { size: 1.0, ..Cause::new("place", &a.name, sentence, true, change) });
+        }
         if origins && axes && type_a == type_b {
             return None;
         }
@@ -69,10 +78,27 @@ impl<'d> Places<'d> {
         if is_there && type_a == type_b {
             return None; // other link frames, the same motion
         }
-        let (sentence, has_reason) = sentence(a, b, origins, other);
+        let (sentence, has_reason) = match rounding(a, b) {
+            Some(by) => (format!("`{}` is rounded in {other}: its place differs by {by:.0e}", a.name), true),
+            None => sentence(a, b, origins, other),
+        };
         let change = Change::Joint(a.name.clone(), Property::Place(b.origin, b.kind));
         let kind = if type_a == type_b { "place" } else { "type" };
         Some(Cause { size: size(a, b), ..Cause::new(kind, &a.name, sentence, has_reason, change) })
+    }
+
+    /// The joint that moves a link.
+    fn carrier(&self, k: usize, link: &str) -> Option<&str> {
+        let with = |(_, links): &(&String, &Vec<String>)| links.iter().any(|name| name == link);
+        self.bodies[k].iter().find(with).map(|(joint, _)| joint.as_str())
+    }
+
+    /// Whether the parents of a joint move with different joints, each of which both robots have.
+    fn is_carried_elsewhere(&self, a: &Joint, b: &Joint) -> bool {
+        let (Some(here), Some(there)) = (self.carrier(0, &a.parent), self.carrier(1, &b.parent)) else { return false };
+        let [one, two] = self.robots;
+        let names = || one.joints.iter().filter_map(|joint| Some((&joint.name, &twin(joint, two)?.name)));
+        names().any(|(_, name)| name == there) && names().any(|(own, name)| own == here && name != there)
     }
 
     /// True if the child of a joint of the same axis is elsewhere: along or about a revolute joint's axis, or anywhere
@@ -127,6 +153,12 @@ fn size(a: &Joint, b: &Joint) -> f64 {
     let [x, y] = [a, b].map(|joint| screw(joint.kind, SE3::identity()));
     let axes = x.iter().zip(y).map(|(x, y)| (x - y).abs() / (1.0 + x.abs()));
     axes.fold(away.max(turned), f64::max)
+}
+
+/// By how much numbers of six digits differ from those before.
+fn rounding(a: &Joint, b: &Joint) -> Option<f64> {
+    let by = size(a, b);
+    (by > 0.0 && by <= 2e-5 && a.kind.name() == b.kind.name()).then_some(by)
 }
 
 /// The difference of a joint in words, and whether it has a reason; `origins` is true if its origin is the same.
