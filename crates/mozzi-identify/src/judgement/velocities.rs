@@ -250,16 +250,17 @@ fn scale(log: &str, scales: &[(&str, f64)], moving: usize) -> Option<Finding> {
     let is_near = |x: f64| (0.85..1.18).contains(&(first / x));
     let is_common = moving > 1 && scales.len() == moving && scales.iter().all(|(_, x)| (x / first - 1.0).abs() < 0.02);
     const NAME_IT: &str = "Name the unit in the header, such as q1_deg";
-    let unit = match () {
-        () if is_near(57.2958) => ": velocities in deg/s, positions in rad?",
-        () if is_near(1.0 / 57.2958) => ": positions in degrees, velocities in rad/s?",
-        () if is_near(9.5493) => ": velocities in rpm?",
-        () if is_near(1e3) || is_near(1e6) || is_near(1e9) => ": times in ms, µs or ns?",
-        () if is_near(1e-3) => ": velocities per ms, or in mrad/s?",
-        () if is_common => ", the same for all joints: the clock's unit is not a second, as of a count of rows?",
-        () => ": another unit, or the motor's side of a gear?",
+    let (unit, remedy) = match () {
+        () if is_near(57.2958) => (": velocities in deg/s, positions in rad?", NAME_IT),
+        () if is_near(1.0 / 57.2958) => (": positions in degrees, velocities in rad/s?", NAME_IT),
+        () if is_near(9.5493) => (": velocities in rpm?", NAME_IT),
+        () if is_near(1e3) || is_near(1e6) || is_near(1e9) => (": times in ms, µs or ns?", NAME_IT),
+        () if is_near(1e-3) => (": velocities per ms, or in mrad/s?", NAME_IT),
+        () if is_common => {
+            (", the same for all joints: the clock's unit is not a second, as of a count of rows?", "Log seconds")
+        }
+        () => (": another unit, or the motor's side of a gear?", NAME_IT),
     };
-    let remedy = if unit.contains("clock") { "Log seconds" } else { NAME_IT };
     let list: Vec<String> = scales.iter().map(|(name, factor)| format!("{name} {factor:.4}")).collect();
     Some(Finding::fault(
         "unit",
