@@ -94,6 +94,10 @@ fn interpolate(t: &[f64], table: &mut [f64], (k, width): (usize, usize), all: &[
         has_any = true;
         let after = known.partition_point(|(time, _)| *time < t[row]);
         let Some(&(t1, x1)) = known.get(after) else { continue };
+        if t1 == t[row] {
+            table[row * width + k] = x1;
+            continue;
+        }
         let Some(&(t0, x0)) = after.checked_sub(1).and_then(|before| known.get(before)) else { continue };
         if t1 - t0 <= REACH * step && t1 > t0 {
             table[row * width + k] = x0 + (x1 - x0) * (t[row] - t0) / (t1 - t0);

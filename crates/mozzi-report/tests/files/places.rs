@@ -1,7 +1,8 @@
 //! Joints that are elsewhere, of another axis or of another type.
 
-use crate::{compare_edited, has_cause, is_accounted_for};
+use crate::{compare_edited, has_cause, is_accounted_for, of_text};
 use mozzi::{SO3, Vec3};
+use mozzi_report::compare::files::compare_files;
 
 /// A jib that turns, a trolley that slides along it, a hook that spins below.
 const CRANE: &str = r#"<robot name="crane">
@@ -143,4 +144,22 @@ fn the_mass_of_a_fixed_base_is_a_note() {
     let found = compare_edited(CRANE, &[(r#"<link name="base"/>"#, heavy)]);
     assert!(found.agrees(), "{}", found.text());
     assert!(found.text().contains("the base has 4 kg in b.urdf, 0 kg in a.urdf"), "{}", found.text());
+}
+
+#[test]
+fn a_base_that_stands_elsewhere_is_named() {
+    let at = |pose: &str| {
+        format!(
+            "<mujoco model='m'><compiler angle='radian'/><worldbody><body name='base' {pose}><body name='arm' pos='0.1 0 0.2'>\
+             <joint name='j' axis='0 1 0'/><inertial pos='0.2 0.1 0' mass='2' diaginertia='0.01 0.02 0.03'/></body></body>\
+             </worldbody></mujoco>"
+        )
+    };
+    let urdf = r#"<robot name="m"><link name="base"/><joint name="j" type="continuous"><parent link="base"/><child link="arm"/>
+        <origin xyz="0.1 0 0.2"/><axis xyz="0 1 0"/></joint><link name="arm"><inertial><origin xyz="0.2 0.1 0"/><mass value="2"/>
+        <inertia ixx="0.01" iyy="0.02" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"#;
+    let of = |pose: &str| compare_files(&of_text("a.urdf", urdf), &of_text("b.xml", &at(pose)), 10, 1, 1e-9).unwrap();
+    assert!(of("").agrees(), "{}", of("").text());
+    has_cause(&of("pos='0.5 0 1'"), "the base is at (0.5, 0, 1) in b.xml, at (0, 0, 0) here", true);
+    has_cause(&of("euler='1.5 0.2 0'"), "the base is at (0, 0, 0) in b.xml, at (0, 0, 0) here, and turned by", true);
 }

@@ -39,6 +39,9 @@ pub fn causes(matched: &Matched, other: &str) -> Result<Vec<Cause>> {
         }
         causes.extend(places.cause(joint, there, other));
     }
+    if !causes.iter().any(|cause| cause.kind == "place") {
+        causes.extend(places.of_base(other)); // no joint below it was named
+    }
     Ok(causes)
 }
 

@@ -3,11 +3,11 @@
 use super::cause::{Cause, Change, Property};
 use super::inertia::vector;
 use super::joints::twin;
-use super::number::ten;
+use super::number::{shown, ten};
 use crate::compare::Result;
 use crate::compare::constants::{home, same_body};
 use mozzi::model::description::{Joint, JointKind};
-use mozzi::{Description, SE3, SO3, SpatialInertia, Twist, Vec3};
+use mozzi::{Base, Description, SE3, SO3, SpatialInertia, Twist, Vec3};
 use std::collections::BTreeMap;
 
 /// Both robots with their links' poses at home.
@@ -85,6 +85,35 @@ impl<'d> Places<'d> {
         let change = Change::Joint(a.name.clone(), Property::Place(b.origin, b.kind));
         let kind = if type_a == type_b { "place" } else { "type" };
         Some(Cause { size: size(a, b), ..Cause::new(kind, &a.name, sentence, has_reason, change) })
+    }
+
+    /// The bases' poses at home, if joints that begin there have the same origins, and yet are elsewhere.
+    fn bases(&self) -> Option<[SE3; 2]> {
+        let [one, two] = self.robots;
+        let of = |joint: &Joint| {
+            let there = twin(joint, two)?;
+            let is_first = self.carrier(0, &joint.parent).is_none() && self.carrier(1, &there.parent).is_none();
+            let poses = [self.homes[0][&joint.parent], self.homes[1][&there.parent]];
+            (is_first && same_place(joint.origin, there.origin)).then_some(poses)
+        };
+        let moves = |joint: &&Joint| joint.kind != JointKind::Fixed;
+        let [here, there] = one.joints.iter().filter(moves).find_map(of)?;
+        (one.base == Base::Fixed && !same_place(here, there)).then_some([here, there])
+    }
+
+    /// A base that stands elsewhere: its turn is that of gravity, seen from the base.
+    pub fn of_base(&self, other: &str) -> Option<Cause> {
+        let [here, there] = self.bases()?;
+        let turn = (there.R * here.R.inverse()).log();
+        let at = |T: SE3| vector(T.p);
+        let turned = match turn.norm() {
+            angle if angle > 1e-9 => format!(", and turned by {}°", shown(angle.to_degrees())),
+            _ => String::new(),
+        };
+        let sentence = format!("the base is at {} in {other}, at {} here{turned}", at(there), at(here));
+        let gravity = SO3::exp(turn).inverse() * Vec3(self.robots[1].gravity);
+        let size = turn.norm().max((there.p - here.p).norm());
+        Some(Cause { size, ..Cause::new("place", "", sentence, true, Change::Gravity(gravity.0)) })
     }
 
     /// The joint that moves a link.
