@@ -50,7 +50,10 @@ impl Options {
             let children = item.element.check_children(&vocabulary::OPTION, cx);
             options.gravity = item.vector::<3>("gravity", cx).unwrap_or(options.gravity);
             if let Some(groups) = item.element.attribute("actuatorgroupdisable") {
-                options.idle_groups = all_numbers(groups.text).unwrap_or_default();
+                match all_numbers(groups.text) {
+                    Ok(found) => options.idle_groups = found,
+                    Err(error) => item.element.report_numbers("actuatorgroupdisable", &groups, error, cx),
+                }
             }
             for name in ["density", "viscosity"] {
                 if item.number(name, 0.0, cx) != 0.0 {
