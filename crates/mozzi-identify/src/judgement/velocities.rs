@@ -257,7 +257,7 @@ fn scale(log: &str, scales: &[(&str, f64)], moving: usize) -> Option<Finding> {
         () if is_near(1e3) || is_near(1e6) || is_near(1e9) => (": times in ms, µs or ns?", NAME_IT),
         () if is_near(1e-3) => (": velocities per ms, or in mrad/s?", NAME_IT),
         () if is_common => {
-            (", the same for all joints: the clock's unit is not a second, as of a count of rows?", "Log seconds")
+            (", the same for all joints: is t a count of rows, or in another unit than s?", "Log seconds")
         }
         () => (": another unit, or the motor's side of a gear?", NAME_IT),
     };

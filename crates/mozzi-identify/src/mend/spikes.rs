@@ -26,6 +26,13 @@ struct Spikes {
     rows: Vec<usize>,
 }
 
+impl Spikes {
+    /// Whether there are spikes, in so few of `count` rows that they are errors.
+    fn are_few(&self, count: usize) -> bool {
+        self.usual > 0.0 && !self.rows.is_empty() && self.rows.len() as f64 <= MOST * count as f64
+    }
+}
+
 /// Removes rows with a force, a velocity or a position that cannot be.
 pub fn remove(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
     let (N, n, nq) = (log.rows(), model.n(), model.nq());
@@ -42,9 +49,12 @@ pub fn remove(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
             of_signal(&x, what == "position", limit.filter(|_| what == "force"))
         });
         let mut joints = Vec::new();
-        for (Spikes { usual, bound, rows }, (q, j, name)) in found.into_iter().zip(&axes) {
-            let is_few = usual > 0.0 && rows.len() as f64 <= MOST * N as f64 && (what == "force" || are_apart(&rows));
-            let Some(&first) = rows.first().filter(|_| is_few) else { continue };
+        for (spikes, (q, j, name)) in found.into_iter().zip(&axes) {
+            if !spikes.are_few(N) || what != "force" && !are_apart(&spikes.rows) {
+                continue;
+            }
+            let Spikes { usual, bound, rows } = spikes;
+            let first = rows[0];
             let value = if what == "position" { table[first * nq + q] } else { table[first * n + j] };
             joints.push(format!(
                 "{name} in {} of {N} rows, first {value:.3e} at {}, where 99 % are below {usual:.3e} and spikes above \
@@ -89,9 +99,9 @@ fn are_apart(rows: &[usize]) -> bool {
 
 /// The numbers without spikes.
 pub fn without(x: Vec<f64>) -> Vec<f64> {
-    let Spikes { usual, rows, .. } = of_signal(&x, true, None);
-    if usual == 0.0 || !are_apart(&rows) || rows.len() as f64 > MOST * x.len() as f64 {
+    let spikes = of_signal(&x, true, None);
+    if !spikes.are_few(x.len()) || !are_apart(&spikes.rows) {
         return x;
     }
-    (0..x.len()).filter(|row| rows.binary_search(row).is_err()).map(|row| x[row]).collect()
+    (0..x.len()).filter(|row| spikes.rows.binary_search(row).is_err()).map(|row| x[row]).collect()
 }

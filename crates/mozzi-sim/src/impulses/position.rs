@@ -24,10 +24,10 @@ const AT_LIMIT: f64 = 1e-11;
 /// it would for each row alone.
 const REGULAR: [f64; 5] = [1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
 const FARTHEST: f64 = 10.0;
-/// No correction moves a joint farther, rad or m.
-const AT_ONCE: f64 = 0.5;
 /// And relative to its largest entry: a row of a loop that holds anyway is rounding.
 const NOISE: f64 = 1e-14;
+/// No correction moves a joint farther, rad or m.
+const AT_ONCE: f64 = 0.5;
 
 /// A row whose position is to be put right.
 #[allow(clippy::large_enum_variant)] // a short list, made once a step

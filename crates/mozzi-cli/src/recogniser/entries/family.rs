@@ -3,7 +3,7 @@
 use super::{Family, MEANINGS, Search};
 use crate::failure::Result;
 use crate::recogniser::reading::Entry;
-use crate::recogniser::word::{DDTHETA, DTHETA, TAU, THETA};
+use crate::recogniser::word::{DDTHETA, DTHETA, TAU};
 use crate::recogniser::{Column, GROUPS, columns, endings};
 
 impl Search<'_> {
@@ -46,14 +46,8 @@ impl Search<'_> {
         }
         // those of a sensor or a base: `acc_x`
         let may_be_others = group == DDTHETA || group == DTHETA && foreign.len() != names.len();
-        if found.iter().all(Option::is_none) && may_be_others {
+        if found.iter().all(Option::is_none) && (foreign.is_empty() || may_be_others) {
             return Ok(None);
-        }
-        if found.iter().all(Option::is_none) && (foreign.is_empty() || group != THETA) {
-            return match foreign.is_empty() {
-                true => Ok(None),
-                false => Err(self.foreign(group, &foreign, &found)),
-            };
         }
         if found.iter().any(Option::is_none) && !foreign.is_empty() {
             return Err(self.foreign(group, &foreign, &found));
