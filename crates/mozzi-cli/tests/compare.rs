@@ -4,19 +4,12 @@
 
 use crate::common;
 
+#[cfg(unix)]
+use common::script;
 use common::{complaint, file, folder, mozzi};
 use serde_json::Value;
 
 const PEERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../mozzi-report/tests/peers");
-
-/// A program that replaces Python.
-#[cfg(unix)]
-fn fake(name: &str, script: &str) -> String {
-    use std::os::unix::fs::PermissionsExt;
-    let path = file(&folder(&format!("fake_{name}")), "python", &format!("#!/bin/sh\n{script}\n"));
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-    path
-}
 
 fn says(arguments: &[&str], words: &[&str]) {
     let (code, message) = complaint(arguments);
@@ -34,26 +27,26 @@ fn without_python_or_a_file() {
 #[cfg(unix)]
 #[test]
 fn a_python_that_gives_no_answer() {
-    let dies = fake("dies", "cat > /dev/null; echo 'cannot go on' >&2; exit 3");
+    let dies = script("fake_dies", "cat > /dev/null; echo 'cannot go on' >&2; exit 3");
     says(&["compare", "ur5", "--python", &dies], &["no library to compare with", "exit status: 3: cannot go on"]);
-    let quits = fake("quits", "exit 0");
+    let quits = script("fake_quits", "exit 0");
     says(&["compare", "ur5", "--python", &quits], &["is not what the script writes: ``"]);
-    let chats = fake("chats", "cat > /dev/null; echo hello");
+    let chats = script("fake_chats", "cat > /dev/null; echo hello");
     says(&["compare", "ur5", "--python", &chats], &["is not what the script writes: `hello"]);
-    let bare = fake(
-        "bare",
+    let bare = script(
+        "fake_bare",
         r#"cat > /dev/null; echo '{"library": "mujoco", "version": null, "attempts": [], "error": {"stage": "import", "message": "No module named x"}}'"#,
     );
-    let hangs = fake("hangs", "exec sleep 1000");
+    let hangs = script("fake_hangs", "exec sleep 1000");
     says(
         &["compare", "ur5", "--python", &hangs, "--time-limit", "0.5"],
         &["no answer within 0.5 s, it was ended", "the program called as Python"],
     );
     says(&["compare", "ur5", "--time-limit", "0"], &["--time-limit is 0 s, expected more than 0"]);
-    let crashes = fake("crashes", "cat > /dev/null; kill -SEGV $$");
+    let crashes = script("fake_crashes", "cat > /dev/null; kill -SEGV $$");
     says(&["compare", "ur5", "--python", &crashes], &["MuJoCo returned no result", "the fault is MuJoCo's"]);
-    let computes = fake(
-        "computes",
+    let computes = script(
+        "fake_computes",
         r#"if grep -q '"library":"mujoco"'; then echo '{"library": "mujoco", "version": "9", "attempts": [], "error": {"stage": "compute", "message": "IndexError: too far", "fault": "mozzi"}}'; else echo '{"library": "pinocchio", "version": "9", "attempts": [], "error": {"stage": "load", "message": "too red"}}'; fi"#,
     );
     let report: Value =
@@ -65,8 +58,8 @@ fn a_python_that_gives_no_answer() {
         &["compare", "ur5", "--python", &bare],
         &["MuJoCo is not installed (No module named x); `pip install pin mujoco`", "--python names another Python"],
     );
-    let refuses = fake(
-        "refuses",
+    let refuses = script(
+        "fake_refuses",
         r#"cat > /dev/null; echo '{"library": "mujoco", "version": "9", "attempts": [], "error": {"stage": "load", "message": "too red"}}'"#,
     );
     let output = mozzi(&["compare", "ur5", "--python", &refuses]);

@@ -99,6 +99,19 @@ fn a_batch_leaves_the_states_so_far() {
 }
 
 #[test]
+fn a_simulation_leaves_the_motion_so_far() {
+    let out = folder("interrupt_motion").join("motion.csv").to_string_lossy().into_owned();
+    let motion = ["simulate", "ur5", "--time", "100000", "--record-every", "10", "--out", &out];
+    let output = interrupted(&motion).expect("hours");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("stopped by Ctrl-C at t = "));
+    let rows = std::fs::read_to_string(&out).expect("written");
+    assert!(rows.starts_with("t,theta_1") && rows.lines().count() > 2);
+    let width = |row: &str| row.split(',').count();
+    assert!(rows.lines().all(|row| width(row) == width(rows.lines().next().expect("a header"))));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("ur5 for "));
+}
+
+#[test]
 fn a_benchmark_leaves_the_quantities_so_far() {
     let quantities = ["--quantity", "inverse-dynamics", "--quantity", "coriolis-matrix"];
     let size = ["--states", "300", "--threads", "1", "--rounds", "200"];

@@ -281,36 +281,6 @@ fn wrong_motions() {
     wrong(&["simulate", "ur5", "--method", "dopri", "--tolerance", "0"], &["tolerance is 0"]);
 }
 
-/// Ctrl-C ends a long simulation and writes the results so far.
-#[cfg(unix)]
-#[test]
-fn an_interrupt_leaves_the_motion_so_far() {
-    use std::process::{Command, Stdio};
-    let folder = folder("interrupt");
-    let out = folder.join("motion.csv");
-    let arguments = ["simulate", "ur5", "--time", "100000", "--record-every", "1000", "--out"];
-    let program = Command::new(env!("CARGO_BIN_EXE_mozzi"))
-        .args(arguments)
-        .arg(&out)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
-    std::thread::sleep(std::time::Duration::from_millis(1500));
-    let interrupted = Command::new("kill").args(["-INT", &program.id().to_string()]).status().expect("kill runs");
-    assert!(interrupted.success());
-    let output = program.wait_with_output().expect("it ends");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(130), "{said}");
-    assert!(said.contains("stopped by Ctrl-C at t = ") && !said.contains('\u{1b}'), "{said}"); // no bar: no terminal
-    let rows = std::fs::read_to_string(&out).expect("written");
-    assert!(rows.starts_with("t,theta_1") && rows.lines().count() > 2);
-    assert!(
-        rows.lines().all(|row| row.split(',').count() == rows.lines().next().expect("a header").split(',').count())
-    );
-    assert!(String::from_utf8_lossy(&output.stdout).contains("ur5 for "));
-}
-
 #[test]
 fn machine_code_makes_the_same_motion() {
     let simulate = |more: &[&str]| {

@@ -74,10 +74,7 @@ fn names_texts_and_paths_are_escaped() {
 #[test]
 #[cfg(unix)]
 fn what_python_says_is_escaped() {
-    use std::os::unix::fs::PermissionsExt;
-    let folder = folder("odd_python");
-    let python = file(&folder, "python", &format!("#!/bin/sh\nprintf '%s' '{ODD}' >&2\nexit 1\n"));
-    std::fs::set_permissions(&python, std::fs::Permissions::from_mode(0o755)).expect("executable");
+    let python = common::script("odd_python", &format!("printf '%s' '{ODD}' >&2\nexit 1"));
     assert_harmless(&mozzi(&["compare", "ur5", "--python", &python]), "compare");
 }
 

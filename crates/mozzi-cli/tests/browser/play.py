@@ -101,7 +101,7 @@ def drag(page, job):
             page.keyboard.up(modifier)
         states.append(page.evaluate(STATE))
     page.keyboard.press("Control+z")
-    page.wait_for_timeout(200)
+    page.wait_for_function("(theta) => mozzi.state().theta.every((angle, k) => angle === theta[k])", arg=states[1]["theta"])
     states.append(page.evaluate(STATE))
     page.select_option("#motors", "gravity")
     page.click("#play")

@@ -65,6 +65,16 @@ pub fn file(folder: &std::path::Path, name: &str, text: &str) -> String {
     path.to_str().expect("a path of text").to_string()
 }
 
+/// A shell script that replaces Python, by its path. Another process writes it: what this one writes may be open
+/// still in a program that another test starts just then, and a file open for writing does not run.
+#[cfg(unix)]
+pub fn script(name: &str, text: &str) -> String {
+    let path = folder(name).join("python").to_str().expect("a path of text").to_string();
+    let write = r##"printf '#!/bin/sh\n%s\n' "$1" > "$0"; chmod 755 "$0""##;
+    assert!(Command::new("sh").args(["-c", write, &path, text]).status().expect("sh runs").success());
+    path
+}
+
 /// Columns that a line takes: combining marks take none.
 fn width(line: &str) -> usize {
     line.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
