@@ -123,7 +123,9 @@ impl Grouping<'_> {
         // gravity is put outside of a coefficient of a sine, not of all sines, as in books
         let gravity = (depth < DEPTH).then_some(Split::Only(Class::Gravity));
         let splits = SPLITS.into_iter().chain(gravity).filter_map(|split| self.grouped(terms, split, depth - 1));
-        for candidate in splits.chain([self.by_frequent_atom(terms)]) {
+        let (outside, inside) = content(terms);
+        let number = (!outside.is_one()).then(|| times(outside, self.search(&inside, depth)));
+        for candidate in splits.chain([self.by_frequent_atom(terms)]).chain(number) {
             let candidate_cost = candidate.cost();
             if candidate_cost < cost {
                 (best, cost) = (candidate, candidate_cost);

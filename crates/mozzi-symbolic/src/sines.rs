@@ -29,11 +29,11 @@ pub(crate) fn shortened(table: &mut Table, p: &Polynomial) -> Vec<Term> {
     terms
 }
 
-/// The terms, then the products, then the minus signs; a multiple of an angle is a product, too.
+/// The terms, then the products, then the minus signs; a multiple of an angle, or of a sum of angles, is a product.
 fn size(table: &Table, terms: &[Term]) -> (usize, i32, usize) {
-    let doubled = |id: Id| match table.atom(id) {
-        Atom::Trig(trig) => trig.harmonic.iter().filter(|k| k.abs() > 1).count() as i32,
-        _ => 0,
+    let doubled = |id: Id| {
+        let multiples = |k: Vec<i64>| k.iter().filter(|k| k.abs() > 1).count() as i32;
+        [true, false].map(|by_sums| multiples(coordinates(table, id, by_sums))).into_iter().min().unwrap_or(0)
     };
     let degree = |m: &Monomial| m.factors().map(|(id, k)| k.abs() + doubled(id)).sum::<i32>();
     let products = |(m, x): &Term| degree(m) + i32::from(!x.abs().is_one() && !m.is_one());

@@ -7,6 +7,7 @@ mod canonical;
 mod inverse;
 mod lagrange;
 mod printed;
+mod published;
 mod robots;
 
 use mozzi::Model;

@@ -1,7 +1,9 @@
 //! The other forms: LaTeX with matching braces, Python that computes, long robots in time.
 
+use crate::robots::all;
 use crate::{embedded, of};
 use mozzi_symbolic::{Language, Options, Symbols};
+use pulldown_latex::{Parser, Storage};
 use std::process::Command;
 use std::time::Instant;
 
@@ -9,19 +11,31 @@ fn options(symbols: Symbols, names: bool) -> Options {
     Options { symbols, names, ..Options::default() }
 }
 
+/// A typesetter of its own reads every formula; TeX does, too, but is large.
 #[test]
-fn latex_has_matching_braces_and_environments() {
-    for (robot, quantity) in [("two_link_planar", "tau"), ("furuta_pendulum", "c"), ("ur5", "g"), ("ur5", "J_b")] {
-        let names = robot == "ur5";
-        let symbols = if names { Symbols::NONE } else { Symbols::ALL };
-        let page = of(embedded(robot), quantity, &options(symbols, names)).print(Language::Latex);
-        let count = |what: &str| page.matches(what).count();
-        assert_eq!(count("{"), count("}"), "{page}");
-        assert_eq!(count("("), count(")"), "{page}");
-        assert_eq!(count(r"\begin"), count(r"\end"), "{page}");
-        assert_eq!(count(r"\["), count(r"\]"), "{page}");
+fn latex_is_typeset() {
+    let mut count = 0;
+    let mut check = |robot: &str, text: &str, quantity: &str, options: &Options| {
+        let page = of(text, quantity, options).print(Language::Latex);
         assert!(page.is_ascii(), "{page}");
+        for piece in page.split(r"\[").skip(1) {
+            let (formula, _) = piece.split_once(r"\]").expect("closed");
+            let storage = Storage::new();
+            for event in Parser::new(formula, &storage) {
+                event.unwrap_or_else(|error| panic!("{robot} {quantity}: {error}\n{formula}"));
+            }
+            count += 1;
+        }
+    };
+    for (name, text) in all() {
+        for quantity in ["M", "C", "c", "g", "tau", "T", "J_b", "kinetic_energy", "M_inv"] {
+            check(name, &text, quantity, &options(Symbols::ALL, true));
+        }
     }
+    for quantity in ["M", "g", "J_b", "J_s"] {
+        check("ur5", embedded("ur5"), quantity, &options(Symbols::NONE, true));
+    }
+    assert!(count > 85, "{count} formulas");
 }
 
 #[test]

@@ -13,7 +13,7 @@ pub struct Moved {
 
 const POINT: [&str; 3] = ["0"; 3];
 
-fn moved(
+pub fn moved(
     kind: &'static str,
     axis: &'static str,
     origin: &'static str,
