@@ -1,7 +1,7 @@
 // Dropped and chosen files: which are robots, and where a robot's meshes are.
 
-const ROBOT = /\.(urdf|xacro|xml|mjcf|json)$/i;
-const TEXT = /\.(urdf|xacro|xml|mjcf|json|ya?ml)$/i;
+const ROBOT = /\.(urdf|xacro|xml|mjcf|sdf|json)$/i;
+const TEXT = /\.(urdf|xacro|xml|mjcf|sdf|json|ya?ml)$/i;
 const MESH = /\.(stl|obj|dae)$/i;
 // Larger texts are no robots.
 const MOST = 64 << 20;

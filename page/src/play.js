@@ -87,7 +87,7 @@ async function openFiles(list, isForMeshes = false) {
   const found = isForMeshes && meshes.length > 0 ? [] : await robotsOf(list);
   if (found.length === 0 && meshes.length > 0 && app.robot) return addMeshes(meshes);
   if (found.length === 0) {
-    app.trouble("No robot is among these files", "Expected a file of URDF, xacro, MJCF or mozzi's JSON; meshes may come with it, as files or in folders.");
+    app.trouble("No robot is among these files", "Expected a file of URDF, xacro, MJCF, SDFormat or mozzi's JSON; meshes may come with it, as files or in folders.");
     return false;
   }
   const done = await openEntry(found[0]);

@@ -42,6 +42,8 @@ fn try_run(workspace: &Workspace) -> Result<Outcome, String> {
     };
     let profiles = workspace.fresh_folder(&format!("{FOLDER}/profiles"))?;
     let programs = programs(workspace)?;
+    // a test of mozzi-xacro runs it
+    command::run(&mut instrumented(workspace, &["build", "--package", "mozzi-xacro", "--example", "batch"]))?;
     let mut cargo = tests(workspace);
     cargo.arg("--no-fail-fast").env("LLVM_PROFILE_FILE", profiles.join("%m-%p.profraw"));
     let failed = command::run(&mut cargo).err();
@@ -89,18 +91,26 @@ fn tools(workspace: &Workspace) -> Option<PathBuf> {
     bin.into_iter().find(|bin| bin.join("llvm-cov").is_file())
 }
 
-/// `cargo test` of the libraries, instrumented, in a folder of its own.
+/// Cargo for instrumented programs, in a folder of its own.
+fn instrumented(workspace: &Workspace, words: &[&str]) -> Command {
+    let mut cargo = workspace.cargo(words);
+    cargo.args(["--target-dir", "target/coverage/build"]);
+    // counters are slow where nothing is inlined
+    for package in ["mozzi", "nalgebra"] {
+        for profile in ["dev", "test"] {
+            cargo.args(["--config", &format!("profile.{profile}.package.{package}.opt-level=3")]);
+        }
+    }
+    cargo.env("RUSTFLAGS", "-Cinstrument-coverage").env("CARGO_INCREMENTAL", "0");
+    cargo
+}
+
+/// `cargo test` of the libraries.
 fn tests(workspace: &Workspace) -> Command {
-    let mut cargo = workspace.cargo(&["test", "--lib", "--tests", "--target-dir", "target/coverage/build"]);
-    cargo.args(["--example", "batch"]); // which a test of mozzi-xacro runs
+    let mut cargo = instrumented(workspace, &["test", "--lib", "--tests"]);
     for package in PACKAGES {
         cargo.args(["--package", package]);
     }
-    // counters are slow where nothing is inlined
-    for package in ["mozzi", "nalgebra"] {
-        cargo.args(["--config", &format!("profile.test.package.{package}.opt-level=3")]);
-    }
-    cargo.env("RUSTFLAGS", "-Cinstrument-coverage").env("CARGO_INCREMENTAL", "0");
     give(&mut cargo, "MOZZI_ORACLES", oracles::folder(workspace));
     give(&mut cargo, "MOZZI_ROBOTS", oracles::robots(workspace));
     let python = venv::python(workspace);

@@ -8,7 +8,7 @@ use mozzi_identify::judgement::judge;
 use mozzi_identify::signals::{Cutoff, Filter};
 use mozzi_identify::{Choice, Error, Log, Options, Sensor, identify};
 
-const MISTAKES: [&str; 7] = ["swapped_joints", "sign", "unit", "gravity", "offset", "limits", "wrench"];
+const MISTAKES: [&str; 8] = ["swapped_joints", "sign", "unit", "scale", "gravity", "offset", "limits", "wrench"];
 
 fn codes(model: &Model, log: &Log, cutoff: f64) -> Vec<&'static str> {
     let filter = Filter { cutoff: Cutoff::Hz(cutoff), ..Filter::default() };

@@ -65,6 +65,24 @@ fn units_of_forces_are_noticed() {
     assert!(text.contains("motor currents in A"), "{text}");
 }
 
+/// A fit of such a log predicts it as well as that of a right one, with masses of a robot that is not this.
+#[test]
+fn a_factor_that_all_forces_share_is_noticed() {
+    let (model, log) = simulated();
+    for factor in [2.0, 0.5] {
+        let scaled = edited(&log, model.n(), |_, _, tau| tau.iter_mut().for_each(|x| *x *= factor));
+        let found = findings(&model, &scaled, CUTOFF);
+        let [finding] = &found[..] else { panic!("{found:?}") };
+        let said: f64 = finding
+            .text
+            .split(" times what")
+            .next()
+            .and_then(|text| text.split(' ').next_back()?.parse().ok())
+            .expect("a number");
+        assert!(finding.code == "scale" && (said / factor - 1.0).abs() < 0.1, "{finding}");
+    }
+}
+
 #[test]
 fn columns_of_wrists_that_are_swapped_are_noticed() {
     let (model, log) = simulated();

@@ -21,6 +21,9 @@ fn of_identification(error: Error) -> PyErr {
     }
 }
 
+/// The names of a log, beside wrenches.
+const KEYS: [&str; 6] = ["t", "theta", "dtheta", "ddtheta", "tau", "target"];
+
 /// A log from a mapping of arrays: t, theta, tau, and dtheta, ddtheta, target, `wrench` of the end effector or
 /// `wrench_FRAME` if they are there. Of a floating base, tau may have the joints' columns alone.
 fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> {
@@ -48,7 +51,17 @@ fn log(model: &Model, given: &Bound<'_, PyAny>, number: usize) -> PyResult<Log> 
         let frame = match name.strip_prefix("wrench_") {
             Some(frame) => model.frame(frame),
             None if name == "wrench" => model.end_effector(),
-            None => continue,
+            None if KEYS.contains(&name.as_str()) => continue,
+            None => {
+                // a table of the joints under another name; energies and the like are no matter
+                let width = given.get_item(&name)?.getattr("shape").and_then(|shape| shape.extract::<(usize, usize)>());
+                if width.is_ok_and(|(_, width)| [model.n(), model.nq()].contains(&width)) {
+                    let keys = KEYS.join(", ");
+                    let text = format!("log {number} has '{name}', expected {keys}, wrench or wrench_FRAME");
+                    return Err(PyValueError::new_err(text));
+                }
+                continue;
+            }
         };
         wrenches.push((frame.map_err(of_model)?, list("wrench", &given.get_item(&name)?, &[rows, 6])?));
     }
@@ -94,6 +107,9 @@ fn choice(model: &Model, options: &Bound<'_, PyDict>) -> PyResult<Choice> {
         other => return Err(PyValueError::new_err(format!("torque is '{other}', expected 'motor' or 'link'"))),
     };
     let only: Option<String> = option(options, "only")?;
+    if let (Some(frame), false) = (option::<String>(options, "payload")?, only.as_deref() == Some("payload")) {
+        return Err(PyValueError::new_err(format!("payload is '{frame}', which only=\"payload\" estimates alone")));
+    }
     let mut choice = match only.as_deref() {
         None => Choice::all(sensor),
         Some("friction") => Choice::only_friction(),
@@ -145,8 +161,8 @@ pub fn _identify<'py>(
     let acceleration = if spline { Acceleration::Spline } else { Acceleration::Differences };
     let total_mass: Option<(f64, f64)> = option(options, "total_mass")?;
     let fit: f64 = option(options, "fit")?.unwrap_or(1.0);
-    if !(fit > 0.0 && fit <= 1.0) {
-        return Err(PyValueError::new_err(format!("fit is {fit}, expected a part of the log, above 0 and at most 1")));
+    if !(fit > 0.0 && fit <= 1.0 && (10.0 * fit - (10.0 * fit).round()).abs() < 1e-9) {
+        return Err(PyValueError::new_err(format!("fit is {fit}, expected a part of the log: 0.1, 0.2, … or 1")));
     }
     let settings = Options {
         choice: choice(&robot, options)?,

@@ -72,6 +72,19 @@ def test_wrong_arguments_are_named(arm, log):
         mozzi.identify(arm, log, prior=-1)
 
 
+def test_tables_under_other_names_are_refused(arm, log):
+    others = {name: table for name, table in log.items() if name != "dtheta"}
+    with pytest.raises(ValueError, match="log 1 has 'qd', expected t, theta, dtheta"):
+        mozzi.identify(arm, {**others, "qd": log["dtheta"]})
+    energy = mozzi.identify(arm, {**log, "energy": np.zeros((len(log["t"]), 3))}, cutoff=5.0)
+    assert energy.verdict.nrms == mozzi.identify(arm, log, cutoff=5.0).verdict.nrms
+
+
+def test_the_verdict_of_a_payload_is_relative_to_the_forces(arm, log):
+    verdict = mozzi.identify(arm, log, only="payload").verdict
+    assert verdict.of_file < 1 and verdict.nrms < verdict.of_file
+
+
 def test_a_motion_excites_within_limits(arm):
     found = mozzi.excite(arm, 4.0, harmonics=2, velocity=2.0, acceleration=8.0)
     assert found.condition < found.condition_of_random
@@ -135,6 +148,21 @@ def test_a_floating_base_is_identified_by_its_contact_wrench():
         mozzi.identify(robot, {**log, "wrench_toe": F})
 
 
+def test_noise_on_a_floating_robot_is_no_mistake():
+    """Its rows of positions are longer than those of velocities."""
+    robot = mozzi.models.anymal()
+    random, rows = np.random.default_rng(0), 399
+
+    def torque(t, theta, dtheta):
+        return np.r_[np.zeros(6), 20 * np.sin(3 * t + np.arange(12)) - dtheta[6:]]
+
+    run = robot.simulate(robot.neutral_configuration, None, rows / 100, rows, torque=torque)
+    tau = run.tau.copy()
+    tau[:, 6:] += random.normal(0, 3, tau[:, 6:].shape)
+    found = mozzi.identify(robot, {"t": run.t, "theta": run.theta, "dtheta": run.dtheta, "tau": tau})
+    assert not any("seem" in text for text in found.findings), found.findings
+
+
 def test_position_controllers():
     """Targets that are made from the torques of a PD law, logged five rows before they act."""
     robot = mozzi.models.double_pendulum()
@@ -159,6 +187,8 @@ def test_wrong_options_are_named(ur5):
         ({"acceleration": "Spline"}, "acceleration is 'Spline', expected 'differences' or 'spline'"),
         ({"total_mass": 20}, "total_mass is 20, expected a mass and its standard deviation"),
         ({"fit": 2.0}, "fit is 2, expected a part of the log"),
+        ({"fit": 0.72}, "fit is 0.72, expected a part of the log: 0.1, 0.2"),
+        ({"payload": "tool0"}, 'payload is .tool0., which only="payload" estimates'),
     ]:
         with pytest.raises((TypeError, ValueError), match=words):
             mozzi.identify(ur5, log, **wrong)

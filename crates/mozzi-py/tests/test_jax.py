@@ -218,6 +218,14 @@ def test_scan_and_fori_loop(ur5, random):
     assert_close(looped, theta, tolerance=1e-9)
 
 
+def test_rollouts_with_constraints_are_refused():
+    rod = {"name": "rod", "kind": "distance", "length": 0.6, "a": {"frame": None, "xyz": [0.9, 0, 0]}, "b": {"frame": "tip"}}
+    arm = mozzi.models.two_link_planar().with_constraints([rod])
+    with pytest.raises(ValueError, match="do not keep constraints, and the robot has 1: Model.rollout does"):
+        mozzi.jax.rollout(arm, np.zeros(2), np.zeros(2), np.zeros((5, 2)), 0.01)
+
+
+
 @pytest.mark.parametrize("method", ["rk4", "euler", "semi-implicit-euler"])
 def test_rollout(robot, random, method):
     theta, dtheta, _ = state(robot, random)

@@ -203,3 +203,15 @@ def test_positions_after_velocities_and_back(robot, random):
         robot.difference(thetas[0], [0])
     with pytest.raises(ValueError, match="a unit quaternion"):
         robot.integrate(2 * thetas[0], dthetas[0])
+
+
+def test_limits_of_a_mimic_joint_are_those_of_its_source():
+    link = '<link name="{}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    joint = (
+        '<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><axis xyz="0 1 0"/>'
+        '<limit lower="-{3}" upper="{3}" effort="1" velocity="1"/>{4}</joint>'
+    )
+    parts = [*map(link.format, "abc"), joint.format("a_b", "a", "b", 1, "")]
+    parts.append(joint.format("b_c", "b", "c", 0.2, '<mimic joint="a_b" multiplier="2"/>'))
+    robot = mozzi.Model.from_urdf_string(f'<robot name="r">{"".join(parts)}</robot>')
+    assert robot.position_limits.tolist() == [[-0.1, 0.1]]

@@ -46,6 +46,6 @@ pub use inverse::is_fraction;
 pub use parameters::{Equal, Meaning, Symbols};
 pub use print::Language;
 pub use rational::Rational;
-pub use read::{At, NotRead, Part, read_urdf};
+pub use read::{At, NotRead, Part, agree, read_urdf};
 pub use steps::{Step, Steps, steps};
 pub use symbol::Symbol;

@@ -3,7 +3,7 @@
 use crate::atom::{Atom, Class, Id, Name};
 use crate::letters::plain_name;
 use crate::rational::Rational;
-use crate::read::{At, NotRead, Part, read_urdf};
+use crate::read::{At, NotRead, Part, agree, read_urdf};
 use crate::symbol::{Symbol, with_table};
 use mozzi::model::description::JointKind;
 use mozzi::{Description, Model, SE3, SO3, SpatialInertia, Vec3};
@@ -159,7 +159,12 @@ impl Parameters {
     /// The description in symbols: by the file's decimals if there is a file, else by the description's numbers.
     pub fn describe(&mut self, robot: &Description, text: Option<&str>) -> Result<Description<Symbol>, NotRead> {
         match text {
-            Some(text) => read_urdf(text, robot, 1e-6, nearest_decimal, |at, text| self.number(at, text)),
+            Some(text) => {
+                let read = read_urdf(text, robot, is_short, nearest_decimal, |at, text| self.number(at, text))?;
+                // what 1.5708 stands for is not its number
+                agree(&read, robot, 1e-6 + 3.0 * self.angle_error)?;
+                Ok(read)
+            }
             None => self.of_numbers(robot),
         }
     }
@@ -261,7 +266,7 @@ impl Parameters {
         let place = format!("{} {}", at.name, describe(at.part));
         let is_equal = |known: &&mut Meaning| {
             let is_near = match self.equal {
-                Equal::Separate => known.name == name, // one inertia of two readings
+                Equal::Separate => known.places.contains(&place), // one number of two readings
                 Equal::OfLink => known.name.number == name.number,
                 Equal::OfRobot => true,
             };
@@ -276,7 +281,7 @@ impl Parameters {
             }
             None => {
                 let mut name = name;
-                while self.legend.iter().any(|known| known.name == name) {
+                while self.legend.iter().any(|known| known.plain_name() == plain_name(&name)) {
                     name.part.push('\'');
                 }
                 let atom = Atom::Parameter { name: name.clone(), class, value: size.clone() };
@@ -297,7 +302,7 @@ impl Parameters {
         let error = (x - twelfths * std::f64::consts::PI / 12.0).abs();
         if twelfths == 0.0
             || digits < 4
-            || error > 2.0 * 10.0_f64.powi(-(digits.min(15) as i32))
+            || error > 1.01 * 10.0_f64.powi(-(digits.min(15) as i32))
             || twelfths.abs() > 1e6
         {
             return value.into();
@@ -336,6 +341,13 @@ fn describe(part: Part) -> String {
 fn nearest_decimal(x: f64) -> Symbol {
     let near = [0.0, 1.0, -1.0].into_iter().find(|y| (x - y).abs() < 1e-15).unwrap_or(x);
     Rational::decimal(&format!("{near}")).unwrap_or(Rational::ZERO).into()
+}
+
+/// Whether an axis is in the direction of small integers, so that its norm has a short root.
+fn is_short(axis: [f64; 3]) -> bool {
+    let least = axis.iter().map(|x| x.abs()).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
+    let is_integer = |x: f64| (x - x.round()).abs() < 1e-9;
+    (1..=100).any(|k| axis.iter().all(|x| is_integer(x / least * f64::from(k))))
 }
 
 fn fifteen_digits(x: f64) -> f64 {

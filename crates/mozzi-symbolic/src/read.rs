@@ -71,6 +71,7 @@ fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
 /// Reads numbers of a document.
 struct Reader<F> {
     number: F,
+    normalizes: fn([f64; 3]) -> bool,
 }
 
 impl<C: Real + Into<f64>, F: FnMut(At, &str) -> Option<C>> Reader<F> {
@@ -120,11 +121,13 @@ impl<C: Real + Into<f64>, F: FnMut(At, &str) -> Option<C>> Reader<F> {
         Ok(SpatialInertia::new(mass, c, I.congruence(SO3::from_rpy(roll, pitch, yaw).matrix())))
     }
 
-    /// A ball, which URDF cannot express, is taken from the description.
+    /// A ball, which URDF cannot express, is taken from the description, and so are axes that these numbers cannot
+    /// normalise.
     fn kind(&mut self, joint: Node, described: JointKind<C>, name: &str) -> Read<JointKind<C>> {
         if let JointKind::Ball(_) = described {
             return Ok(described);
         }
+        let normalizes = self.normalizes;
         let mut direction = || Ok(Vec3(self.numbers(child(joint, "axis"), "xyz", "1 0 0", Part::Axis, name)?));
         let twist = match joint.attribute("type") {
             Some("fixed") => return Ok(JointKind::Fixed),
@@ -133,22 +136,26 @@ impl<C: Real + Into<f64>, F: FnMut(At, &str) -> Option<C>> Reader<F> {
             Some("prismatic") => Twist::linear(direction()?),
             other => return Err(NotRead(format!("a joint of type {}", other.unwrap_or("none")))),
         };
+        let [w, v] = [twist.w, twist.v].map(|x| x.0.map(Into::into));
+        if matches!(described, JointKind::Screw(_)) && !normalizes([0, 1, 2].map(|k| w[k] + v[k])) {
+            return Ok(described);
+        }
         let axis = ScrewAxis::normalize(twist).map_err(|error| NotRead(error.to_string()))?;
         Ok(JointKind::Screw(axis.0))
     }
 }
 
 /// The first reader's description of a file, with the file's decimals by `number`. Gravity, which files do not
-/// contain, is taken from the description's shortest decimals; balls and rotor inertias, which URDF cannot express, are
-/// the description's numbers by `plain`. Joints are read first, then links.
+/// contain, is taken from the description's shortest decimals; balls and rotor inertias, which URDF cannot express, and
+/// axes that are not to be normalised in these numbers (`normalizes`), are the description's numbers by `plain`. Joints
+/// are read first, then links. [`agree`] compares the readers.
 ///
 /// # Errors
-/// [`NotRead`] if the second reader does not know an element, or the two readers disagree by more than `tolerance` of
-/// an attribute's largest number.
+/// [`NotRead`] if the second reader does not know an element.
 pub fn read_urdf<C: Real + Into<f64>>(
     text: &str,
     robot: &Description,
-    tolerance: f64,
+    normalizes: fn([f64; 3]) -> bool,
     plain: impl Fn(f64) -> C + Copy,
     number: impl FnMut(At, &str) -> Option<C>,
 ) -> Result<Description<C>, NotRead> {
@@ -163,7 +170,7 @@ pub fn read_urdf<C: Real + Into<f64>>(
         let found = elements.get(&(tag, name)).copied();
         found.ok_or_else(|| NotRead(format!("there is no <{tag} name=\"{name}\">")))
     };
-    let mut reader = Reader { number };
+    let mut reader = Reader { number, normalizes };
     let mut read = robot.map(plain);
     for (k, gravity) in robot.gravity.iter().enumerate() {
         let at = At { name: "gravity", part: Part::Gravity(k) };
@@ -188,17 +195,20 @@ pub fn read_urdf<C: Real + Into<f64>>(
     for link in &mut read.links {
         link.inertia = reader.inertia(named("link", &link.name)?, &link.name.clone())?;
     }
-    agree(&read.map(Into::into), robot, tolerance)?;
     Ok(read)
 }
 
-/// Checks that both readers read the same robot, to rounding.
-fn agree(second: &Description, first: &Description, tolerance: f64) -> Read<()> {
+/// Checks that both readers read the same robot.
+///
+/// # Errors
+/// [`NotRead`] where they disagree by more than `tolerance` of an attribute's largest number.
+pub fn agree<C: Real + Into<f64>>(second: &Description<C>, first: &Description, tolerance: f64) -> Result<(), NotRead> {
+    let second = second.map(Into::into);
     let near = |what: &str, a: &[f64], b: &[f64]| {
         let size = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        match a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance * size) {
-            true => Ok(()),
-            false => Err(NotRead(format!("{what}: the second reader finds {a:?}, the first {b:?}"))),
+        match a.iter().zip(b).find(|(a, b)| !((*a - *b).abs() <= tolerance * size)) {
+            None => Ok(()),
+            Some((a, b)) => Err(NotRead(format!("{what}: the second reader finds {a}, the first {b}"))),
         }
     };
     for (a, b) in second.links.iter().zip(&first.links) {

@@ -249,8 +249,15 @@ impl Table {
         Polynomial::default()
     }
 
-    /// √x of a number ≥ 0.
+    /// √x of a number ≥ 0; of long decimals the nearest number, such as the length of an axis that is a unit vector but
+    /// for rounding.
     pub fn root(&mut self, x: &Rational) -> Option<Polynomial> {
+        let nearest = || Rational::decimal(&format!("{}", x.to_f64().sqrt())).map(Polynomial::constant);
+        self.short_root(x).or_else(nearest)
+    }
+
+    /// √x as an integer's root times a fraction.
+    fn short_root(&mut self, x: &Rational) -> Option<Polynomial> {
         let Rational::Small(a, b) = *x else { return None };
         if a <= 0 {
             return (a == 0).then(Polynomial::default);

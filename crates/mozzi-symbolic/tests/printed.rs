@@ -38,6 +38,81 @@ fn latex_is_typeset() {
     assert!(count > 85, "{count} formulas");
 }
 
+/// Names of links that differ in signs alone are different symbols in code; TeX gets them as text.
+#[test]
+fn links_keep_their_own_symbols() {
+    let link = |name: &str, mass: &str| {
+        format!(
+            "<link name=\"{name}\"><inertial><origin xyz=\"0.{mass} 0 0\"/><mass value=\"{mass}\"/><inertia ixx=\"0\" \
+             iyy=\"0\" izz=\"0\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
+        )
+    };
+    let on = |child: &str, kind: &str, parent: &str| {
+        format!(
+            "<joint name=\"to {child}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+             <axis xyz=\"0 1 0\"/></joint>"
+        )
+    };
+    let parts = [
+        "<link name=\"base\"/>".to_string(),
+        link("arm", "2"),
+        on("arm", "continuous", "base"),
+        link("load-1", "3"),
+        on("load-1", "fixed", "arm"),
+        link("load_1", "5"),
+        on("load_1", "fixed", "arm"),
+        link("50%$", "7"),
+        on("50%$", "fixed", "arm"),
+    ];
+    let text = format!("<robot name=\"r\">{}</robot>", parts.concat());
+    let derived = of(&text, "M", &options(Symbols::ALL, false));
+    let names: std::collections::BTreeSet<String> = derived.legend.iter().map(|meaning| meaning.plain_name()).collect();
+    assert_eq!(names.len(), derived.legend.len(), "{names:?}");
+    assert!(derived.print(Language::Latex).contains(r"50\%\$"));
+    let root = of(&text.replace("0 1 0", "1 1 0"), "g", &options(Symbols::NONE, false)).print(Language::Text);
+    assert!(root.contains("√2 "), "{root}");
+}
+
+/// A robot of one joint: θ is a tuple of one symbol.
+#[test]
+fn sympy_takes_one_joint() {
+    let Some(python) = crate::lagrange::python() else { return };
+    let pendulum = crate::robots::chain(
+        "pendulum",
+        &[crate::robots::moved("continuous", "0 1 0", "0 0 0", "2", "0 0 -0.5", ["0", "0", "0"])],
+    );
+    for (quantity, check) in [("g", "g"), ("tau", "tau"), ("kinetic_energy", "kinetic_energy")] {
+        let module = of(&pendulum, quantity, &options(Symbols::ALL, false)).print(Language::Sympy);
+        let script = format!("{module}\nassert len(theta if 'theta' in globals() else dtheta) == 1, '{check}'\n");
+        let output = Command::new(&python).args(["-c", &script]).output().expect("Python runs");
+        assert!(output.status.success(), "{}\n{script}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+/// Angles in four decimals are those of π, axes of rounded components are unit vectors.
+#[test]
+fn rounded_angles_and_axes_are_derived() {
+    let robot = |rpy: &str, axis: &str| {
+        crate::robots::chain(
+            "rounded",
+            &[crate::robots::Moved {
+                rpy: Box::leak(rpy.to_string().into_boxed_str()),
+                axis: Box::leak(axis.to_string().into_boxed_str()),
+                ..crate::robots::moved("continuous", "0 0 1", "0 0 0", "2", "0.5 0 0", ["0.1", "0.2", "0.3"])
+            }],
+        )
+    };
+    for angle in ["1.5708", "1.5707", "1.57079633"] {
+        let text =
+            of(&robot(&format!("{angle} 0 0"), "0 0 1"), "g", &options(Symbols::ALL, false)).print(Language::Text);
+        assert!(text.contains("[ m₁r₁g cos θ₁ ]"), "{angle}: {text}");
+    }
+    let text = of(&robot("0 0 0", "0.26726124 0.53452248 0.80178373"), "M", &options(Symbols::NONE, false));
+    let found = text.evaluate(&[&[0.4]], |x| x.to_f64(), std::f64::consts::PI)[0][0];
+    let model = crate::model(&robot("0 0 0", "0.26726124 0.53452248 0.80178373"));
+    assert!((found - model.mass_matrix(&[0.4]).expect("sound")[(0, 0)]).abs() < 1e-12, "{found}");
+}
+
 #[test]
 fn python_computes_what_the_kernel_computes() {
     let python = std::env::var("MOZZI_PYTHON").unwrap_or_else(|_| "python3".into());

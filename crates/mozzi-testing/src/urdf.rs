@@ -9,7 +9,9 @@ use mozzi_symbolic::NotRead;
 /// # Errors
 /// [`NotRead`] if the second reader does not know an element, or the two readers disagree.
 pub fn read_urdf<W: Wide>(text: &str, robot: &Description) -> Result<Description<W>, NotRead> {
-    mozzi_symbolic::read_urdf(text, robot, 1e-14, W::from_f64, |_, number| W::parse(number))
+    let read = mozzi_symbolic::read_urdf(text, robot, |_| true, W::from_f64, |_, number| W::parse(number))?;
+    mozzi_symbolic::agree(&read, robot, 1e-14)?;
+    Ok(read)
 }
 
 #[cfg(test)]

@@ -102,7 +102,7 @@ fn fill(
     let (n, P) = (columns.model.n(), columns.count());
     let mut equations = Equations::new(columns, samples)?;
     let (mut A, mut b, mut w) = (vec![0.0; n * P], vec![0.0; n], vec![1.0; n]);
-    let mut batches: Vec<Vec<f64>> = vec![Vec::new(); n];
+    let (mut batches, mut squares): (Vec<Vec<f64>>, _) = (vec![Vec::new(); n], vec![0.0; n]);
     let mut flush = |batches: &mut [Vec<f64>]| {
         for ((triangle, batch), of) in triangles.iter_mut().zip(batches).zip(&pattern.0) {
             let rows = batch.len() / (of.len() + 1);
@@ -120,12 +120,16 @@ fn fill(
         }
         for j in (0..n).filter(|&j| samples.is_valid[k * n + j]) {
             batches[j].extend(pattern.0[j].iter().map(|&c| w[j] * A[j * P + c]).chain([w[j] * b[j]]));
+            // of what was measured, also where a part of it is known; currents have no unit of force
+            let force = if columns.choice.gains { b[j] } else { samples.tau[k * n + j] };
+            squares[j] += (w[j] * force).powi(2);
         }
         if count % BATCH == BATCH - 1 {
             flush(&mut batches);
         }
     }
     flush(&mut batches);
+    triangles.iter_mut().zip(squares).for_each(|(triangle, square)| triangle.square += square);
     Ok(())
 }
 

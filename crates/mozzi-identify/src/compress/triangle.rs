@@ -13,7 +13,7 @@ pub struct Triangle {
     pub R: DMatrix<f64>,
     /// The number of equations in it.
     pub rows: usize,
-    /// Σ b².
+    /// Σ of the squared forces.
     pub square: f64,
 }
 
@@ -46,7 +46,6 @@ impl Triangle {
         let size = self.R.ncols();
         assert!(B.ncols() == size, "{} columns, expected {size}", B.ncols());
         self.rows += rows;
-        self.square += B.column(size - 1).norm_squared();
         for first in (0..size).step_by(PANEL) {
             let count = PANEL.min(size - first);
             let filled = height(first + count - 1);
@@ -98,10 +97,8 @@ impl Triangle {
 
     /// Adds the equations of another triangle, all of them times a factor.
     pub fn merge(&mut self, other: &Triangle, factor: f64) {
-        let (rows, square) = (other.rows, other.square);
-        let before = self.square;
-        self.push_upper(&other.R * factor, rows);
-        self.square = before + factor * factor * square;
+        self.push_upper(&other.R * factor, other.rows);
+        self.square += factor * factor * other.square;
     }
 
     /// The number of unknowns P.

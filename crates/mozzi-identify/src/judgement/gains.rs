@@ -15,6 +15,9 @@ const WITH_SAY: f64 = 0.25;
 /// Factors that wrong masses in the file explain.
 const BY_MASSES: (f64, f64) = (0.7, 1.4);
 
+/// Factors of different forces are one if they are apart by at most this.
+const SHARED: f64 = 1.15;
+
 /// τ = a τ̂ + d θ̇ + μ tanh(θ̇/0.05) + I θ̈ + o, with d, μ, I ≥ 0.
 #[derive(Clone, Debug, Default)]
 pub struct Fit {
@@ -141,6 +144,17 @@ pub fn is_scale(gains: &[Gain]) -> bool {
     let with_say: Vec<&Gain> = gains.iter().filter(|gain| gain.has_say()).collect();
     let is_far = |gain: &&Gain| gain.factor > NEAR_ONE || (0.0..1.0 / NEAR_ONE).contains(&gain.factor);
     3 * with_say.len() >= gains.len() && !with_say.is_empty() && with_say.iter().all(is_far)
+}
+
+/// A factor that the forces share which the file explains, where it is between those of another unit and 1.
+pub fn common(gains: &[Gain]) -> Option<f64> {
+    let mut factors: Vec<f64> = gains.iter().filter(|gain| gain.has_say()).map(|gain| gain.factor).collect();
+    factors.sort_by(f64::total_cmp);
+    let (low, high) = (*factors.first()?, *factors.last()?);
+    let middle = factors[factors.len() / 2];
+    let (heavier, lighter) = (BY_MASSES.1, BY_MASSES.0);
+    let is_common = factors.len() >= 2 && 3 * factors.len() >= gains.len() && low > 0.0 && high < SHARED * low;
+    (is_common && !(lighter..=heavier).contains(&middle)).then_some(middle)
 }
 
 /// An explanation of the factors.

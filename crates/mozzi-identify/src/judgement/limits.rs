@@ -11,7 +11,7 @@ const BEYOND: f64 = 3.0;
 /// A warning for each kind of signal; `has_forces` is false if currents were logged.
 pub fn check(model: &Model, log: &Log, samples: &Samples, has_forces: bool) -> Vec<Finding> {
     let n = model.n();
-    if model.places().iter().any(|place| place.freedom != Freedom::One) || samples.count() == 0 {
+    if model.configuration_space().places().iter().any(|place| place.freedom != Freedom::One) || samples.count() == 0 {
         return Vec::new();
     }
     let column = |table: &[f64], j: usize| table.iter().skip(j).step_by(n).copied().collect::<Vec<f64>>();

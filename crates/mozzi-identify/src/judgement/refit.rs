@@ -38,7 +38,7 @@ pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option
     let model = setup.columns.model;
     let n = model.n();
     let is_bad = |errors: &Errors| errors.normalized(&errors.consistent) > GOOD;
-    let is_one = model.places().iter().all(|place| place.freedom == Freedom::One);
+    let is_one = model.configuration_space().places().iter().all(|place| place.freedom == Freedom::One);
     if !is_one || !setup.columns.choice.links || !found.left_out.as_ref().is_some_and(is_bad) {
         return None;
     }

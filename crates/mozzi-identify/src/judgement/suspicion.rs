@@ -100,6 +100,15 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
         let text = format!("{log}: {}; {}", gains::text(&gains, &names), evidence(scaled));
         return Ok(vec![Finding::fault("unit", text)]);
     }
+    if let Some(factor) = gains::common(&gains).filter(|_| is_better && !is_rated) {
+        let text = format!(
+            "{log}: the forces are {factor:.2} times what the robot's file predicts, in every joint that it predicts: \
+             another unit or a gain of the driver, or all masses of the file are wrong; if they are not, divide the \
+             forces by it; {}",
+            evidence(scaled)
+        );
+        return Ok(vec![Finding::warning("scale", text)]);
+    }
     let gain = as_it_is - least;
     Ok(match () {
         () if gain > CLEAR && is_explained && is_apart => {

@@ -671,7 +671,7 @@ class Model:
         """Number of positions: n, plus one for each quaternion, of a floating base, a ball or a free joint."""
     @property
     def parameters(self) -> Array:
-        """Inertial parameters π: ten numbers a body, five a joint; see `regressor`."""
+        """Inertial parameters π, read-only: ten numbers a body, five a joint; see `regressor` and `with_parameters`."""
     @property
     def link_names(self) -> list[str]:
         """Names of the links, in the order of the file."""
@@ -840,7 +840,7 @@ class Timed(Reference):
         """The profile, s(t)."""
 
 class Recorded(Reference):
-    """A motion from a table of times, for robots with a fixed base whose joints have one axis each."""
+    """A motion from a table of times, of any robot."""
     def __init__(
         self, model: Model, t: ArrayLike, theta: ArrayLike, dtheta: ArrayLike | None = None,
         ddtheta: ArrayLike | None = None

@@ -24,6 +24,15 @@ Place = tuple[int, int, bool]
 _SMALL = 1e-3
 
 
+def require_tree(constraints: Sequence[Any]) -> None:
+    """Steps by θ̈ of the tree, θ ← θ ⊕ hθ̇, leave what constraints allow."""
+    if constraints:
+        raise ValueError(
+            f"these rollouts do not keep constraints, and the robot has {len(constraints)}: Model.rollout does; "
+            "Model.without_constraints() is the tree alone"
+        )
+
+
 def _joined(xp: Any, parts: list[Any]) -> Any:
     # torch's `concatenate` has no rule for torch.autograd.grad(is_grads_batched=True), its `cat` has
     return xp.cat(parts, dim=-1) if hasattr(xp, "cat") else xp.concatenate(parts, axis=-1)

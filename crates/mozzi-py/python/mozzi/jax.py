@@ -461,10 +461,16 @@ def rollout(
     -------
     Rollout
         The start and the state after each step.
+
+    Raises
+    ------
+    ValueError
+        If the model has constraints, which `Model.rollout` keeps.
     """
     _check(model)
     if method not in ("rk4", "euler", "semi-implicit-euler"):
         raise ValueError(f"method is {method!r}, expected 'rk4', 'euler' or 'semi-implicit-euler'")
+    _tangent.require_tree(model.constraints)
     names = ("theta", "dtheta", "tau")
     theta, dtheta, tau = _arrays(names, (theta, dtheta, tau))
     h = jnp.asarray(step, theta.dtype)

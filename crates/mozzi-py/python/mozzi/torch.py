@@ -424,4 +424,5 @@ class Model:
             return self.forward_dynamics(theta, dtheta, tau, parameters=parameters)
 
         check_rows(self.model, tau)
+        _tangent.require_tree(self.model.constraints)
         return steps(self.model._quaternions, dynamics, float(step), method, theta, dtheta, tau)

@@ -4,6 +4,7 @@ use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::results::named;
 use mozzi::Freedom;
+use mozzi::model::Bounds;
 use pyo3::prelude::*;
 
 /// A copy of the robot's numbers: a change of it would be lost.
@@ -101,11 +102,12 @@ impl PyModel {
     }
 
     /// Lowest and highest position of each joint, shape (joints, 2), rad or m; infinite without a limit.
+    ///
+    /// The limits of its mimic joints restrict it, too. A ball's are those of its angle from 0.
     #[getter]
     fn position_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let none = [f64::NEG_INFINITY, f64::INFINITY];
-        let limits = self.robot().model.joints().flat_map(|joint| joint.limits.position.unwrap_or(none));
-        read_only(array(py, &[self.robot().model.joint_names().len(), 2], limits)?)
+        let limits = Bounds::of(&self.robot().model).joints;
+        read_only(array(py, &[limits.len(), 2], limits.into_iter().flatten())?)
     }
 
     /// Maximum speed of each joint, shape (joints,), rad/s or m/s; infinite without a limit.
@@ -122,11 +124,11 @@ impl PyModel {
         read_only(array(py, &[self.robot().model.joint_names().len()], limits)?)
     }
 
-    /// Inertial parameters π: ten numbers a body, five a joint; see `regressor`.
+    /// Inertial parameters π, read-only: ten numbers a body, five a joint; see `regressor` and `with_parameters`.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let parameters = self.robot().model.parameters();
-        array(py, &[parameters.len()], parameters)
+        read_only(array(py, &[parameters.len()], parameters)?)
     }
 
     /// Names of `parameters`.

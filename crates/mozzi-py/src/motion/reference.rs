@@ -159,7 +159,7 @@ impl PyTimed {
     }
 }
 
-/// A motion from a table of times, for robots with a fixed base whose joints have one axis each.
+/// A motion from a table of times, of any robot.
 ///
 /// Between two rows it is the quintic that meets θ, θ̇ and θ̈ of both; without θ̈, the cubic that meets θ and θ̇;
 /// without both, the cubic spline of all rows, at rest at both ends.

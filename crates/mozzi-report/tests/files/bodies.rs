@@ -49,3 +49,34 @@ fn another_density() {
         true,
     );
 }
+
+/// The same robot as a part of another: `left_` before all its names.
+fn prefixed(robot: &mut Description) {
+    let prefix = |name: &mut String| *name = format!("left_{name}");
+    robot.links.iter_mut().for_each(|link| prefix(&mut link.name));
+    robot.frames.iter_mut().for_each(|frame| [&mut frame.name, &mut frame.link].into_iter().for_each(prefix));
+    for joint in &mut robot.joints {
+        [&mut joint.name, &mut joint.parent, &mut joint.child].into_iter().for_each(prefix);
+        joint.mimic.iter_mut().for_each(|mimic| prefix(&mut mimic.joint));
+    }
+    robot.end_effector.iter_mut().for_each(prefix);
+}
+
+#[test]
+fn links_with_a_prefix_keep_their_causes() {
+    let same = compare_description(prefixed);
+    let text = flat(&same);
+    assert!(same.agrees() && text.contains("`upper` is `left_upper`"), "{text}");
+    let dense = compare_description(|robot| {
+        let upper = place(robot, "upper");
+        robot.links[upper].inertia = robot.links[upper].inertia * 2.7;
+        prefixed(robot);
+    });
+    has_cause(&dense, "has `upper` of another density", true);
+    let dropped = compare_description(|robot| {
+        robot.links.retain(|link| link.name != "tool");
+        robot.joints.retain(|joint| joint.name != "mount");
+        prefixed(robot);
+    });
+    has_cause(&dropped, "drops `tool`, with its mass, from the body of `lower`", true);
+}

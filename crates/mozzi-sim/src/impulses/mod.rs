@@ -52,7 +52,7 @@ pub(crate) struct Impulses<'r> {
     reach: f64,
     pub memory: Memory,
     pub account: OneSidedAccount,
-    /// The forces on the planes that are not 0, by their pairs.
+    /// The forces on the planes in the last step, by their pairs; during a step, the impulses of its parts.
     pub forces: Vec<ContactForce>,
     /// That of the last system.
     pub mass: FactoredMass<'r>,
@@ -279,7 +279,7 @@ impl<'r> Impulses<'r> {
         warm.sort_unstable_by_key(|(key, _)| *key);
         self.note_rebounds(system, solved, h);
         self.note_stopped(system, solved, h);
-        self.set_forces(system, &(&solved.p / h));
+        self.add_impulses(system, &solved.p);
     }
 
     /// Contacts that came, and go at the end of the step, touched within it: after t_c = gap/|u_n|, and are (h −
@@ -323,16 +323,23 @@ impl<'r> Impulses<'r> {
         }
     }
 
-    /// The contact forces in {s}, from those along the rows.
-    fn set_forces(&mut self, system: &System, force: &DVector<f64>) {
+    /// Adds the impulses of a part of a step, in {s}, from those along the rows.
+    fn add_impulses(&mut self, system: &System, p: &DVector<f64>) {
         let planes = self.contacts.planes.len();
-        let of_pair = |&Touching { pair: (point, plane), first, axes, .. }: &Touching| {
-            let f = axes[0] * force[first] + axes[1] * force[first + 1] + axes[2] * force[first + 2];
-            (f != Vec3::zero()).then_some(ContactForce { pair: point * planes + plane, f })
-        };
-        self.forces.clear();
-        self.forces.extend(system.touches.iter().filter_map(of_pair));
-        self.forces.sort_unstable_by_key(|force| force.pair);
+        for &Touching { pair: (point, plane), first, axes, .. } in &system.touches {
+            let f = axes[0] * p[first] + axes[1] * p[first + 1] + axes[2] * p[first + 2];
+            let pair = point * planes + plane;
+            match self.forces.binary_search_by_key(&pair, |force| force.pair) {
+                Ok(at) => self.forces[at].f += f,
+                Err(at) if f != Vec3::zero() => self.forces.insert(at, ContactForce { pair, f }),
+                Err(_) => {}
+            }
+        }
+    }
+
+    /// The contact forces of a whole step of h seconds, from the impulses of its parts.
+    pub fn end_step(&mut self, h: f64) {
+        self.forces.iter_mut().for_each(|force| force.f = force.f * (1.0 / h));
     }
 
     /// The planes at a time.

@@ -75,7 +75,9 @@ impl Course<'_> {
         let Integrator::MoreauJean(method) = integrator else { return Ok(()) };
         let (theta, dtheta) = (motion.theta.clone(), motion.dtheta.clone());
         let mut phase = Phase { t: motion.t, theta, dtheta, works: motion.integrals };
+        impulses.forces.clear();
         method.step(driven, impulses, &mut phase, h)?;
+        impulses.end_step(h);
         for (rate, (after, before)) in motion.ddtheta.iter_mut().zip(phase.dtheta.iter().zip(&motion.dtheta)) {
             *rate = (after - before) / h;
         }

@@ -91,12 +91,12 @@ impl Moreau {
         while done < h * (1.0 - 1e-12) {
             let part = length.min(h - done);
             let is_shortest = part <= shortest;
-            let start = (state.clone(), impulses.memory.clone());
+            let start = (state.clone(), impulses.memory.clone(), impulses.forces.clone());
             match self.part(driven, impulses, state, part, is_shortest) {
                 Ok(true) => done += part,
                 Err(error) if is_shortest || !is_too_long(&error) => return Err(error),
                 Ok(false) | Err(_) => {
-                    (*state, impulses.memory) = start;
+                    (*state, impulses.memory, impulses.forces) = start;
                     length = 0.5 * part;
                     impulses.account.halvings += 1;
                 }

@@ -1,8 +1,9 @@
 //! Joints with dry friction.
 
 use super::robots::{block, by, pendulum, run};
-use mozzi::testing;
-use mozzi_sim::{Method, Options};
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Description, SE3, ScrewAxis, Solid, SpatialInertia, Sym3, Vec3, testing};
+use mozzi_sim::{ContactPoint, Contacts, Method, Options, Plane, Simulation, Zero};
 
 #[test]
 fn a_held_pendulum_does_not_move() {
@@ -103,4 +104,35 @@ fn friction_in_every_joint_stays_at_rest_in_free_fall() {
         println!("seed {seed}: moved {moved:.1e}, residual {:.1e}", run.one_sided.expect("dry").largest_residual);
         assert!(moved < 1e-12);
     }
+}
+
+/// A box on the ground with a slide on top that comes to rest within a step, which is divided there: the contacts'
+/// force is the mean over the whole step.
+#[test]
+fn contact_forces_of_a_divided_step_are_its_mean() {
+    let up = JointKind::Screw(ScrewAxis::new([0.0; 3], [0.0, 0.0, 1.0]).expect("unit"));
+    let slider = SpatialInertia::new(1.0, Vec3::zero(), Sym3::diagonal(0.01, 0.01, 0.01));
+    let model = Description::new("box with a slide")
+        .link("box", Solid::Box([0.2, 0.2, 0.1]).inertia(2.0))
+        .link("slider", slider)
+        .joint(Joint { friction: 15.0, ..Joint::new("slide", "box", "slider", SE3::identity(), up) })
+        .floating()
+        .build()
+        .expect("sound");
+    let base = model.frame("box").expect("there");
+    let corners = [[0.1, 0.1], [0.1, -0.1], [-0.1, 0.1], [-0.1, -0.1]];
+    let points = corners.map(|[x, y]| ContactPoint::new(format!("{x} {y}"), base, Vec3([x, y, -0.05]), 0.3));
+    let contacts = Contacts { points: points.into(), planes: vec![Plane::ground()] };
+    let (h, mut dtheta) = (0.01, [0.0; 7]);
+    dtheta[6] = 1.2345;
+    let theta = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0];
+    let simulation = Simulation { contacts, ..Simulation::new(by(Method::Automatic, 0.4, h)) };
+    let run = simulation.run(&model, &theta, &dtheta, Zero).expect("a motion");
+    let rate = |k: usize| run.motion.sample(k).dtheta[6]; // of the slider's momentum: the box rests
+    for k in 1..40 {
+        let found: f64 = run.motion.sample(k).contact_forces.iter().map(|force| force.f.0[2]).sum();
+        let expected = -3.0 * 9.81 - (rate(k) - rate(k - 1)) / h;
+        assert!((found - expected).abs() < 1e-6, "{k}: {found}, expected {expected}");
+    }
+    assert!(rate(0) > 1.0 && rate(39).abs() < 1e-9, "it comes to rest");
 }

@@ -36,6 +36,17 @@ fn dotted(text: &str, dots: u8) -> String {
     }
 }
 
+/// The text of a link's name.
+fn escaped(text: &str) -> String {
+    let each = |c: char| match c {
+        '_' | '%' | '$' | '#' | '&' | '{' | '}' => format!(r"\{c}"),
+        '\\' => r"\backslash ".into(),
+        '^' | '~' => format!(r"\{c}{{}}"),
+        c => c.to_string(),
+    };
+    text.chars().map(each).collect()
+}
+
 impl Style for Latex {
     fn number(&self, x: &Rational) -> String {
         let (a, b) = x.parts();
@@ -46,7 +57,7 @@ impl Style for Latex {
     }
     fn name(&self, name: &Name) -> String {
         let part = match &name.part[..] {
-            part if part.len() > 2 => format!(r"\mathrm{{{}}}", part.replace('_', r"\_")),
+            part if part.len() > 2 => format!(r"\mathrm{{{}}}", escaped(part)),
             part => part.replace('ω', r"\omega "),
         };
         let number = name.number.map(|n| n.to_string());

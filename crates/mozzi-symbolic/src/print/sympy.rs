@@ -57,7 +57,8 @@ pub(crate) fn module(derivation: &Derivation) -> String {
         vec!["from sympy import Matrix, Rational, cos, pi, sign, sin, sqrt, symbols".to_string(), String::new()];
     for (input, ids) in derivation.inputs.iter().filter(|(_, ids)| !ids.is_empty()) {
         let names: Vec<String> = ids.iter().map(|&id| printer.atom(id, 1)).collect();
-        lines.push(format!("{input} = {} = symbols(\"{}\", real=True, seq=True)", names.join(", "), names.join(" ")));
+        let tuple = if names.len() == 1 { format!("{},", names[0]) } else { names.join(", ") };
+        lines.push(format!("{input} = {tuple} = symbols(\"{}\", real=True, seq=True)", names.join(" ")));
     }
     for meaning in &derivation.legend {
         let name = Sympy.name(&meaning.name);

@@ -78,7 +78,7 @@ impl Style for Text {
         // a function's argument ends at a space; names with letters below the line need one
         let ends_open = left.rsplit(['(', ')']).next().is_some_and(|text| text.contains("sin") || text.contains("cos"));
         let ends_in_letters = last.chars().last().is_some_and(|c| c.is_ascii_lowercase() && last.chars().count() > 1);
-        let starts_long = right.contains('_');
+        let starts_long = right.contains('_') || last.contains('√');
         let digits = right.starts_with(|c: char| c.is_ascii_digit());
         let ends_open = ends_open || right.starts_with('(') && (left.contains("sin") || left.contains("cos"));
         match is_function(right) || ends_open || ends_in_letters || starts_long || digits || left.contains('_') {

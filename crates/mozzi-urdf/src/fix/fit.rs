@@ -5,7 +5,7 @@ use crate::geometry::hull::convex_hull;
 use crate::geometry::moments::{Filling, Moments, moments};
 use crate::geometry::{Form, Purpose, Shape, scaled_surface};
 use mozzi::spatial::Rounded;
-use mozzi::{SO3, SpatialInertia, Vec3};
+use mozzi::{SE3, SO3, SpatialInertia, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -140,7 +140,8 @@ pub(super) fn solids(file: &Path, text: &str, detail: Detail, mesh_root: Option<
         let mut why = None;
         let solid = [Purpose::Collision, Purpose::Visual].into_iter().find_map(|purpose| {
             let mut points = Vec::new();
-            for shape in shapes.iter().filter(|shape| shape.purpose == purpose) {
+            let own: Vec<&&Shape> = shapes.iter().filter(|shape| shape.purpose == purpose).collect();
+            for shape in &own {
                 let read = points_of(shape, file, mesh_root);
                 let mut own = read.map_err(|error| why.get_or_insert(error).clone()).ok()?;
                 if detail == Detail::Rough {
@@ -148,7 +149,11 @@ pub(super) fn solids(file: &Path, text: &str, detail: Detail, mesh_root: Option<
                 }
                 points.extend(own.into_iter().map(|p| shape.T.R.matrix() * p + shape.T.p));
             }
-            Solid::of(&points)
+            let mut solid = Solid::of(&points)?;
+            if let [Shape { form, T, .. }] = own[..] {
+                solid.moments = form.solid().map_or(solid.moments, |solid| exact(solid, *T));
+            }
+            Some(solid)
         });
         if let Some(solid) = solid {
             solids.all.insert(link.to_string(), solid);
@@ -157,6 +162,12 @@ pub(super) fn solids(file: &Path, text: &str, detail: Detail, mesh_root: Option<
         }
     }
     solids
+}
+
+/// A lone solid has its formulas.
+fn exact(solid: mozzi::Solid, T: SE3) -> Moments {
+    let G = solid.of_density(1.0).transformed(T);
+    Moments { size: G.mass, center: T.p, I: G.about_center_of_mass() }
 }
 
 /// The points that are the farthest in some direction of Fibonacci's sphere.

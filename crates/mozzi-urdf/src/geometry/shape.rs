@@ -1,6 +1,6 @@
 //! A shape: its form, its pose, its colour.
 
-use mozzi::SE3;
+use mozzi::{SE3, Solid};
 
 /// A solid or a surface on a link.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,6 +93,18 @@ impl Form {
             Form::Sphere { .. } => "sphere",
             Form::Mesh { .. } => "mesh",
         }
+    }
+
+    /// As a solid with formulas of its own; None for a mesh.
+    pub fn solid(&self) -> Option<Solid> {
+        Some(match *self {
+            Form::Box { size } => Solid::Box(size),
+            Form::Cylinder { radius, length } => Solid::Cylinder { radius, length },
+            Form::Capsule { radius, length } => Solid::Capsule { radius, length },
+            Form::Ellipsoid { radii } => Solid::Ellipsoid(radii),
+            Form::Sphere { radius } => Solid::Sphere { radius },
+            Form::Mesh { .. } => return None,
+        })
     }
 
     /// Its lengths in the order of its fields; a mesh's scale factors.

@@ -152,7 +152,8 @@ impl Reader<'_> {
             let value = value.as_ref()?;
             let Some(node) = self.graph.find(&joint.scope, value.text) else {
                 let message = format!("{subject}: {word}: is `{}`, which is no link or frame here", shown(value.text));
-                cx.findings.add(Finding::error("unknown_link", value.span.clone(), message));
+                let help = self.graph.of_static(value.text);
+                cx.findings.add(Finding::error("unknown_link", value.span.clone(), message).maybe_help(help));
                 return None;
             };
             self.graph.link(node, cx).ok()

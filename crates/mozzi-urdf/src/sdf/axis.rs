@@ -58,12 +58,17 @@ impl<'a> Axis<'a> {
             }
         };
         let expressed_in = part.child("xyz").and_then(|xyz| xyz.attribute("expressed_in"));
-        let axes = match expressed_in.filter(|value| !value.text.is_empty() && version >= Version::WITH_FRAMES) {
+        let is_old = version < Version::WITH_FRAMES;
+        let of_model = part.flag("use_parent_model_frame", version < Version::WITH_AXES_IN_JOINT, cx);
+        if of_model && !is_old {
+            let message = format!("{}: use_parent_model_frame is of versions before 1.7", element.subject);
+            let help = "write <xyz expressed_in=\"__model__\"> instead, or the file's version";
+            let span = part.span("use_parent_model_frame");
+            cx.findings.add(Finding::error("unknown_element", span, message).help(help));
+        }
+        let axes = match expressed_in.filter(|value| !value.text.is_empty()) {
             Some(frame) => Axes::Frame(frame),
-            None if version < Version::WITH_FRAMES => {
-                let of_model = part.flag("use_parent_model_frame", version < Version::WITH_AXES_IN_JOINT, cx);
-                if of_model { Axes::Model } else { Axes::Joint }
-            }
+            None if of_model && is_old => Axes::Model,
             None => Axes::Joint,
         };
         let nowhere = &mut Place::default();

@@ -56,13 +56,21 @@ pub(crate) struct Graph<'a> {
     pub world: Rc<Scope>,
     /// The model whose name does not precede its links', and its node.
     pub robot: Option<(String, usize)>,
+    /// Names of static models of the world, which are not read.
+    pub statics: Vec<String>,
 }
 
 impl<'a> Graph<'a> {
     pub fn new() -> Self {
         let world = Rc::new(Scope { prefix: String::new(), frame: 0, model: 0 });
-        let mut graph =
-            Graph { nodes: Vec::new(), names: HashMap::new(), known: Vec::new(), world: world.clone(), robot: None };
+        let mut graph = Graph {
+            nodes: Vec::new(),
+            names: HashMap::new(),
+            known: Vec::new(),
+            world: world.clone(),
+            robot: None,
+            statics: Vec::new(),
+        };
         graph.add(Node::new(What::World, &world, "world".to_string()));
         graph
     }
@@ -109,9 +117,17 @@ impl<'a> Graph<'a> {
         let found = self.find(scope, value.text);
         if found.is_none() {
             let message = format!("{subject}: names `{}`, which is no frame here", shown(value.text));
-            cx.findings.add(Finding::error("unknown_frame", value.span.clone(), message));
+            let help = self.of_static(value.text);
+            cx.findings.add(Finding::error("unknown_frame", value.span.clone(), message).maybe_help(help));
         }
         found
+    }
+
+    /// A remedy if a name is that of a static model, or of a part of one.
+    pub fn of_static(&self, name: &str) -> Option<String> {
+        let model = name.split("::").next().filter(|model| self.statics.iter().any(|other| other == model))?;
+        let help = "is static, and static models are not read: write the pose in numbers, and `world` for the link";
+        Some(format!("`{}` {help}", shown(model)))
     }
 
     /// The configuration in {s}.

@@ -1,5 +1,6 @@
 //! The files that `<include>`s name: a file or folder next to the file, or `model://NAME` in a folder above it.
 
+use super::version::Version;
 use crate::XacroArguments;
 use crate::files;
 use crate::report::finding::{Finding, Findings};
@@ -136,12 +137,14 @@ fn path(uri: &str, folder: Option<&Path>, given: &XacroArguments) -> Result<Path
     Err("cannot be read: there is no such file".to_string())
 }
 
-/// The last file that a folder's `model.config` names: the one of the newest version.
+/// The file of the newest version that a folder's `model.config` names; of equal ones the last.
 fn configured(folder: &Path) -> Option<String> {
     let text = files::read(&folder.join("model.config"), 1 << 16).ok()?;
     let text = String::from_utf8(text).ok()?;
     let document = roxmltree::Document::parse(&text).ok()?;
-    let name = document.descendants().rfind(|node| node.has_tag_name("sdf"))?.text()?.trim();
+    let version = |node: &roxmltree::Node| node.attribute("version").and_then(Version::of);
+    let files = document.descendants().filter(|node| node.has_tag_name("sdf"));
+    let name = files.max_by_key(version)?.text()?.trim();
     // only a file of this folder
     (!name.contains(['/', '\\'])).then(|| name.to_string())
 }

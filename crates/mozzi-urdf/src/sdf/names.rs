@@ -36,7 +36,10 @@ impl Names {
             d.links.iter().filter(|link| !is_world(&link.name)).map(|link| settle(&link.name, "_link")).collect();
         let frames = d.frames.iter().map(|frame| settle(&frame.name, "_frame")).collect();
         let joints = d.joints.iter().map(|joint| settle(&joint.name, "_joint")).collect();
-        let model = if d.name.is_empty() { "robot".to_string() } else { plain(&d.name) };
+        let model = match d.name.as_str() {
+            "" | "world" => "robot".to_string(),
+            name => plain(name),
+        };
         if model != d.name {
             changed.push((d.name.clone(), model.clone()));
         }

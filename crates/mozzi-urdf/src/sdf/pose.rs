@@ -20,8 +20,15 @@ impl<'a> Pose<'a> {
     /// The pose of an element; the identity if it has none.
     pub fn of(part: &Part<'a>, version: Version, cx: &mut Context) -> Self {
         let Some(element) = part.child("pose") else { return Pose { T: SE3::identity(), relative_to: None } };
-        let word = if version >= Version::WITH_FRAMES { "relative_to" } else { "frame" };
-        let relative_to = element.attribute(word).filter(|value| !value.text.trim().is_empty());
+        let given = |word| element.attribute(word).filter(|value: &Value| !value.text.trim().is_empty());
+        let before = given("frame");
+        if let Some(frame) = before.as_ref().filter(|_| version >= Version::WITH_FRAMES) {
+            let message =
+                format!("{}: pose: frame=\"{}\" is of versions before 1.7", part.element.subject, shown(frame.text));
+            let help = "write relative_to instead, or the file's version";
+            cx.findings.add(Finding::error("unknown_attribute", frame.span.clone(), message).help(help));
+        }
+        let relative_to = given("relative_to").or(before);
         let in_degrees = element.attribute("degrees").and_then(|value| truth(element, "degrees", &value, cx));
         let value = element.content();
         if value.text.is_empty() {
@@ -41,6 +48,7 @@ impl<'a> Pose<'a> {
             }),
             "euler_rpy" => part.element.vector::<6>("pose", &value, cx).map(|[x, y, z, a, b, c]| {
                 let unit = if in_degrees == Some(true) { core::f64::consts::PI / 180.0 } else { 1.0 };
+                origin::suspect_degrees(&format!("{}: pose", element.subject), [a, b, c].map(|x| x * unit), &value, cx);
                 SE3 { R: SO3::from_rpy(a * unit, b * unit, c * unit), p: Vec3([x, y, z]) }
             }),
             other => {

@@ -17,13 +17,19 @@ impl Version {
     /// `relative_to`, `expressed_in`, `attached_to`, and one space of names for links, joints and frames.
     pub const WITH_FRAMES: Version = Version(7);
 
+    /// The version of these words, if it is read.
+    pub fn of(text: &str) -> Option<Self> {
+        let [first, last] = Self::READ;
+        let minor = text.trim().strip_prefix("1.").and_then(|minor| minor.parse::<u32>().ok());
+        minor.filter(|minor| (first..=last).contains(minor)).map(Version)
+    }
+
     /// That of the root element; the newest, with a diagnostic, if it is not read.
     pub fn read(root: &Element, cx: &mut Context) -> Self {
         let [first, last] = Self::READ;
         let Some(value) = root.required("version", cx) else { return Version(last) };
-        let minor = value.text.trim().strip_prefix("1.").and_then(|minor| minor.parse::<u32>().ok());
-        if let Some(minor) = minor.filter(|minor| (first..=last).contains(minor)) {
-            return Version(minor);
+        if let Some(version) = Version::of(value.text) {
+            return version;
         }
         let message = format!("sdf: version: is `{}`, expected 1.{first} to 1.{last}", shown(value.text));
         cx.findings.add(Finding::error("unsupported_version", value.span, message));

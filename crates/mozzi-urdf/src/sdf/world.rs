@@ -38,7 +38,11 @@ impl<'a> Reader<'a> {
         models.retain(|model| self.moves(model, cx));
         if models.is_empty() {
             let message = "sdf: has no <model> that moves".to_string();
-            cx.findings.add(Finding::error("no_model", root.span(), message));
+            let of_first = |name: &String| {
+                format!("`{}` is static, fixed in the world: delete its <static>, or choose another file", shown(name))
+            };
+            let help = self.graph.statics.first().map(of_first);
+            cx.findings.add(Finding::error("no_model", root.span(), message).maybe_help(help));
             return None;
         }
         let is_robot = models.len() == 1;
@@ -61,7 +65,7 @@ impl<'a> Reader<'a> {
     }
 
     /// True if a model is a part of the robot; false for static models of a world and for included lights.
-    fn moves(&self, model: &Element<'a>, cx: &mut Context) -> bool {
+    fn moves(&mut self, model: &Element<'a>, cx: &mut Context) -> bool {
         let is_set = |element: &Element| {
             let flag = element.elements().find(|child| child.name() == "static");
             flag.is_some_and(|flag| ["1", "true"].contains(&flag.content().text.to_ascii_lowercase().as_str()))
@@ -76,6 +80,7 @@ impl<'a> Reader<'a> {
         }
         if is_static {
             let name = model.attribute("name").map_or("", |name| name.text);
+            self.graph.statics.push(name.to_string());
             let message = format!("model `{}`: is static, and no part of the robot", shown(name));
             cx.findings.add(Finding::unused(Topic::Looks, "ignored_element", model.span(), message));
         }

@@ -58,7 +58,7 @@ fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
     writeln!(text, "<?xml version=\"1.0\"?>\n<sdf version=\"{version}\"{space}>")?;
     let in_world = d.gravity != Description::new("").gravity;
     if in_world {
-        writeln!(text, "<world name=\"world\">\n  <gravity>{}</gravity>", triple(Vec3(d.gravity)))?;
+        writeln!(text, "<world name=\"default\">\n  <gravity>{}</gravity>", triple(Vec3(d.gravity)))?;
     }
     writeln!(text, "  <model name=\"{}\">", names.model())?;
     if let Some((_, pose)) = start_pose(d) {

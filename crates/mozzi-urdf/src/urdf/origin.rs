@@ -2,7 +2,7 @@
 
 use crate::report::finding::Finding;
 use crate::text::context::Context;
-use crate::text::element::Element;
+use crate::text::element::{Element, Value};
 use crate::text::version::Version;
 use crate::urdf::vocabulary::{ORIGIN, shown};
 use mozzi::{SE3, SO3, Vec3};
@@ -21,14 +21,20 @@ pub(crate) fn read(origin: &Element, cx: &mut Context) -> Option<SE3> {
     let (xyz, rpy) = (vector("xyz"), vector("rpy"));
     let quaternion = quaternion(origin, cx);
     let [roll, pitch, yaw] = rpy?;
-    // degrees are suspected for whole numbers beyond two turns; the widest angle of published robots is 3π/2
-    let is_degrees = |x: &f64| x.abs() > 4.0 * core::f64::consts::PI && x.abs() <= 720.0 && x % 1.0 == 0.0;
-    if let (Some(angle), Some(value)) = ([roll, pitch, yaw].into_iter().find(is_degrees), origin.attribute("rpy")) {
-        let message = format!("{}: rpy: has an angle of {angle} radians: in degrees?", origin.subject);
-        cx.findings.add(Finding::warning("degrees", value.span, message));
+    if let Some(value) = origin.attribute("rpy") {
+        suspect_degrees(&format!("{}: rpy", origin.subject), [roll, pitch, yaw], &value, cx);
     }
     let R = quaternion?.unwrap_or_else(|| SO3::from_rpy(roll, pitch, yaw));
     Some(SE3 { R, p: Vec3(xyz?) })
+}
+
+/// A warning if angles in radians are whole numbers beyond two turns; the widest angle of published robots is 3π/2.
+pub(crate) fn suspect_degrees(what: &str, angles: [f64; 3], value: &Value, cx: &mut Context) {
+    let is_degrees = |x: &f64| x.abs() > 4.0 * core::f64::consts::PI && x.abs() <= 720.0 && x % 1.0 == 0.0;
+    if let Some(angle) = angles.into_iter().find(is_degrees) {
+        let message = format!("{what}: has an angle of {angle} radians: in degrees?");
+        cx.findings.add(Finding::warning("degrees", value.span.clone(), message));
+    }
 }
 
 /// The rotation of `quat_xyzw`, if the element has one and the version of the file defines it; None, with a diagnostic,

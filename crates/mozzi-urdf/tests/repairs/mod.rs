@@ -151,6 +151,15 @@ fn a_density_gives_inertias() {
     let list = estimates("arm.urdf", &text, 1000.0, None, &Settings::default()).unwrap().proposals;
     assert_eq!(list.len(), 2, "the base has no shape");
     let repaired = parse("arm.urdf", apply(&text, &list)).unwrap().description;
+    // a ball has its own formula
+    let ball = text.replace("<box size=\"0.1 0.2 0.3\"/>", "<sphere radius=\"0.1\"/>");
+    let list = estimates("arm.urdf", &ball, 1000.0, None, &Settings::default()).unwrap().proposals;
+    let round = parse("arm.urdf", apply(&ball, &list)).unwrap().description;
+    let expected = mozzi::Solid::Sphere { radius: 0.1 }.of_density(1000.0);
+    let made =
+        round.links.iter().find(|link| (link.inertia.mass - expected.mass).abs() < 1e-12).expect("one of 4.19 kg");
+    let (I, J) = (made.inertia.about_center_of_mass(), expected.about_center_of_mass());
+    assert!([I.xx - J.xx, I.yy - J.yy, I.zz - J.zz, I.xy].iter().all(|x| x.abs() < 1e-12), "{I:?}");
     // 1000 kg/m³ of 0.1 × 0.2 × 0.3 m; the other keeps its mass of 6 kg, which is the same
     let expected = mozzi::Solid::Box([0.1, 0.2, 0.3]).of_density(1000.0);
     for link in &repaired.links[1..] {

@@ -5,6 +5,7 @@ use crate::failure::Result;
 use crate::recogniser::reading::Entry;
 use crate::recogniser::word::{DDTHETA, DTHETA, TAU};
 use crate::recogniser::{Column, GROUPS, columns, endings};
+use std::collections::BTreeSet;
 
 impl Search<'_> {
     /// The columns of a family by entry; None if it has none of the robot's joints.
@@ -95,9 +96,12 @@ impl Search<'_> {
             )));
         }
         let missing: Vec<String> = (0..=count).filter(|&k| !holds(k)).map(|k| k.to_string()).collect();
-        let first_numbers = || (lowest..).filter(|&k| holds(k)).take(count).map(|k| k.to_string()).collect::<Vec<_>>();
-        let flag = match self.request.has_flags && numbers.len() >= count {
-            true => format!("; --order {} takes these, in the robot's order", first_numbers().join(",")),
+        let different: BTreeSet<usize> = numbers.iter().map(|(number, _)| *number).collect();
+        let flag = match self.request.has_flags && different.len() >= count {
+            true => {
+                let first: Vec<String> = different.iter().take(count).map(usize::to_string).collect();
+                format!("; --order {} takes these, in the robot's order", first.join(","))
+            }
             false => String::new(),
         };
         let why = match missing.is_empty() {

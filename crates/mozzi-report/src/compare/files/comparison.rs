@@ -21,6 +21,8 @@ pub struct FilesComparison {
     /// The velocities whose forces are compared: those of these joints and of a base that floats in both.
     pub(super) rows: usize,
     pub(super) renamed: Vec<(String, String)>,
+    /// Links under other names in the second file.
+    pub(super) links: Vec<(String, String)>,
     pub(super) only: [Vec<String>; 2],
     /// A sentence about the base, if it is floating in one file only.
     pub(super) base: Option<String>,
@@ -95,6 +97,7 @@ pub fn compare_files(
         common,
         rows,
         renamed: matched.renamed,
+        links: matched.links,
         only: [matched.only_a, matched.only_b],
         base,
         before,

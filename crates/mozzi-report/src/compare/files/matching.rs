@@ -3,7 +3,7 @@
 use crate::compare::Result;
 use crate::compare::constants::{Constants, freed};
 use mozzi::Description;
-use mozzi::model::description::JointKind;
+use mozzi::model::description::{ConstraintKind, JointKind};
 
 /// Both robots with the same independent moving joints, under the first one's names.
 pub struct Matched {
@@ -11,6 +11,8 @@ pub struct Matched {
     pub b: Description,
     /// Joints known by their place: names in both.
     pub renamed: Vec<(String, String)>,
+    /// Links known by their joints: names in both.
+    pub links: Vec<(String, String)>,
     /// Joints that move in one robot only; fixed at 0 here.
     pub only_a: Vec<String>,
     pub only_b: Vec<String>,
@@ -67,5 +69,47 @@ pub fn matched(a: &Description, b: &Description) -> Result<Matched> {
             joint.name.push('\'');
         }
     }
-    Ok(Matched { a, b, renamed, only_a, only_b })
+    let links = links_of_joints(&a, &b);
+    links.iter().for_each(|(here, there)| rename_link(&mut b, there, here));
+    Ok(Matched { a, b, renamed, links, only_a, only_b })
+}
+
+impl Matched {
+    /// The second file's name of a link.
+    pub fn link_there<'n>(&'n self, name: &'n str) -> &'n str {
+        self.links.iter().find(|(here, _)| here == name).map_or(name, |(_, there)| there)
+    }
+}
+
+/// The links that a joint of the same name moves, then the bases, too, where their names are in one robot only.
+fn links_of_joints(a: &Description, b: &Description) -> Vec<(String, String)> {
+    let has = |robot: &Description, name: &str| {
+        robot.links.iter().any(|link| link.name == name) || robot.frames.iter().any(|frame| frame.name == name)
+    };
+    let is_renamed = |(x, y): &(String, String)| !has(a, y) && !has(b, x);
+    let base = |robot: &Description| {
+        let is_base = |name: &str| robot.joints.iter().all(|joint| joint.child != name);
+        robot.links.iter().find(|link| is_base(&link.name)).map(|link| link.name.clone())
+    };
+    let moved = a.joints.iter().filter_map(|joint| {
+        let there = b.joints.iter().find(|there| there.name == joint.name)?;
+        Some((joint.child.clone(), there.child.clone()))
+    });
+    let mut links: Vec<(String, String)> = moved.filter(is_renamed).collect();
+    if !links.is_empty() {
+        links.extend(base(a).zip(base(b)).filter(is_renamed));
+    }
+    links
+}
+
+fn rename_link(robot: &mut Description, from: &str, to: &str) {
+    let links = robot.links.iter_mut().map(|link| &mut link.name);
+    let of_joints = robot.joints.iter_mut().flat_map(|joint| [&mut joint.parent, &mut joint.child]);
+    let of_frames = robot.frames.iter_mut().map(|frame| &mut frame.link);
+    let anchors = robot.constraints.iter_mut().flat_map(|constraint| match &mut constraint.kind {
+        ConstraintKind::Frames { a, b, .. } => [a, b].into_iter().filter_map(|anchor| anchor.frame.as_mut()).collect(),
+        _ => Vec::new(),
+    });
+    let all = links.chain(of_joints).chain(of_frames).chain(anchors).chain(&mut robot.end_effector);
+    all.filter(|name| *name == from).for_each(|name| *name = to.to_string());
 }

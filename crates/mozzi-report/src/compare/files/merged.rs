@@ -23,6 +23,7 @@ pub fn causes(
     let home_b = home(robots[1])?;
     let (model_a, model_b) = (robots[0].clone().build()?, robots[1].clone().build()?);
     let (bodies_a, bodies_b) = (model_a.folded_links(), model_b.folded_links());
+    let axes = |file: &RobotFile, name: &str| file.inertial_axes.get(name).copied();
     let (mut causes, mut notes) = (Vec::new(), Vec::new());
     for body in &bodies_a {
         let Some(there) = bodies_b.iter().find(|there| there.joint == body.joint) else { continue };
@@ -44,7 +45,7 @@ pub fn causes(
         }
         if is_light(robots[0], &only_a) && is_light(robots[1], &only_b) {
             for name in names.iter().filter(|name| others.contains(name)) {
-                causes.extend(of_link(name, robots, [home_a[*name], home_b[*name]], files, &only_a));
+                causes.extend(of_link(name, matched, [home_a[*name], home_b[*name]], files, &only_a));
             }
             continue;
         }
@@ -52,15 +53,16 @@ pub fn causes(
         let into = home_a[first].inverse();
         let theirs = theirs.transformed(into);
         let parts: Vec<Part> =
-            names.iter().map(|name| Part::of(name, robots[0], files[0], into * home_a[*name])).collect();
+            names.iter().map(|name| Part::of(name, robots[0], axes(files[0], name), into * home_a[*name])).collect();
         let missing: Vec<bool> = names.iter().map(|name| only_a.contains(name)).collect();
         let mut why = merged([&files[0].name, &files[1].name], first, &parts, &missing, Body::of(theirs));
         if why.is_none() && !only_b.is_empty() {
             // the first file merges
             let first = others[0];
             let into = home_b[first].inverse();
-            let parts: Vec<Part> =
-                others.iter().map(|name| Part::of(name, robots[1], files[1], into * home_b[*name])).collect();
+            let part =
+                |name: &&str| Part::of(name, robots[1], axes(files[1], matched.link_there(name)), into * home_b[*name]);
+            let parts: Vec<Part> = others.iter().map(part).collect();
             let missing: Vec<bool> = others.iter().map(|name| only_b.contains(name)).collect();
             why = merged([&files[1].name, &files[0].name], first, &parts, &missing, Body::of(mine.transformed(into)));
         }
@@ -95,13 +97,8 @@ fn merged_links(names: &[&str], robots: [&Description; 2], files: [&RobotFile; 2
 }
 
 /// A link that both have.
-fn of_link(
-    name: &str,
-    robots: [&Description; 2],
-    homes: [SE3; 2],
-    files: [&RobotFile; 2],
-    alone: &[&str],
-) -> Option<Cause> {
+fn of_link(name: &str, matched: &Matched, homes: [SE3; 2], files: [&RobotFile; 2], alone: &[&str]) -> Option<Cause> {
+    let (robots, called) = ([&matched.a, &matched.b], [name, matched.link_there(name)]);
     let (a, b) = (inertia(robots[0], name), inertia(robots[1], name));
     // in the first robot's link frame
     let into = homes[0].inverse() * homes[1];
@@ -110,8 +107,8 @@ fn of_link(
     if same_body(&a, &b) || same_body(&a, &other) {
         return None;
     }
-    let axes = [0, 1].map(|k| files[k].inertial_axes.get(name).copied());
-    let solid = solid::of_link(files[0], name).or_else(|| solid::of_link(files[1], name));
+    let axes = [0, 1].map(|k| files[k].inertial_axes.get(called[k]).copied());
+    let solid = solid::of_link(files[0], called[0]).or_else(|| solid::of_link(files[1], called[1]));
     let names = [files[0].name.as_str(), files[1].name.as_str()];
     let twice = alone.is_empty().then(|| counted_twice(name, robots[0], a, other)).flatten();
     let why = twice.map(|child| format!("{} counts the mass of `{child}` twice, also in `{name}`", names[1]));
@@ -144,9 +141,8 @@ struct Part {
 }
 
 impl Part {
-    fn of(name: &str, robot: &Description, file: &RobotFile, T: SE3) -> Self {
+    fn of(name: &str, robot: &Description, axes: Option<SO3>, T: SE3) -> Self {
         let G = inertia(robot, name);
-        let axes = file.inertial_axes.get(name).copied();
         Part { name: name.to_string(), body: Body::of(G.transformed(T)), own: Body::of(G), T, axes }
     }
 

@@ -3,6 +3,7 @@
 use super::comparison::FilesComparison;
 use super::forces::{Gap, Gaps, States};
 use super::number::shown;
+use crate::compare::vocabulary;
 use crate::text::Page;
 use serde_json::{Value, json};
 
@@ -69,6 +70,10 @@ pub fn text(it: &FilesComparison) -> String {
     for (here, there) in &it.renamed {
         page.line(format!("  `{here}` is `{there}` in {b}, known by its place"));
     }
+    if !it.links.is_empty() {
+        let names = vocabulary::some(&it.links, |(here, there)| format!("`{here}` is `{there}`"));
+        page.line(format!("  links in {b}, known by their joints: {names}"));
+    }
     for (only, name) in it.only.iter().zip([a, b]) {
         if !only.is_empty() {
             let list = only.iter().map(|joint| format!("`{joint}`")).collect::<Vec<_>>().join(", ");
@@ -128,6 +133,7 @@ pub fn json(it: &FilesComparison) -> Value {
         "seed": it.seed,
         "joints": it.common,
         "renamed": it.renamed.iter().map(|(here, there)| json!([here, there])).collect::<Value>(),
+        "renamed_links": it.links.iter().map(|(here, there)| json!([here, there])).collect::<Value>(),
         "only": it.only,
         "base": it.base,
         "differences": gaps(&it.before),

@@ -1,7 +1,7 @@
 //! The inertia of a link's shapes.
 
 use super::RobotFile;
-use mozzi::{Solid, SpatialInertia};
+use mozzi::SpatialInertia;
 use mozzi_urdf::geometry::{Form, Purpose, filled_mesh};
 use std::path::Path;
 
@@ -17,13 +17,8 @@ pub fn of_link(file: &RobotFile, link: &str) -> Option<SpatialInertia> {
 
 /// About its own frame.
 fn solid(form: &Form, robot: Option<&Path>) -> Option<SpatialInertia> {
-    let solid = match *form {
-        Form::Box { size } => Solid::Box(size),
-        Form::Sphere { radius } => Solid::Sphere { radius },
-        Form::Ellipsoid { radii } => Solid::Ellipsoid(radii),
-        Form::Cylinder { radius, length } => Solid::Cylinder { radius, length },
-        Form::Capsule { radius, length } => Solid::Capsule { radius, length },
-        Form::Mesh { ref file, scale } => return filled_mesh(robot?, file, scale).ok(),
-    };
-    Some(solid.of_density(1.0))
+    match form {
+        Form::Mesh { file, scale } => filled_mesh(robot?, file, *scale).ok(),
+        primitive => Some(primitive.solid()?.of_density(1.0)),
+    }
 }
