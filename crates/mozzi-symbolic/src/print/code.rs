@@ -1,6 +1,7 @@
 //! Functions in Python, MATLAB and Julia, on doubles. Parameters are arguments with the file's numbers as defaults; in
 //! MATLAB they are assigned at the function's head.
 
+use super::legend::angles;
 use super::{Language, Printer, Style};
 use crate::atom::{Class, Id, Name};
 use crate::derivation::{Derivation, Formula};
@@ -87,7 +88,8 @@ pub(crate) fn function(derivation: &Derivation, language: Language) -> String {
         let below = derivation.denominator_number(formula).map_or(String::new(), |k| format!("/{}", delta(k)));
         body.push(format!("{output} = {}{below}", array(formula, &printer, language)));
     }
-    let about = format!("{name}: {} in this order", results.join(", "));
+    let note = angles(&derivation.angles).map_or(String::new(), |note| format!("; {note}"));
+    let about = format!("{name}: {} in this order{note}", results.join(", "));
     let all = outputs.join(", ");
     match language {
         Language::Python => {

@@ -1,5 +1,6 @@
 //! LaTeX with amsmath.
 
+use super::legend::angles;
 use super::{Letter, Printer, Style};
 use crate::atom::Name;
 use crate::derivation::{Derivation, Formula};
@@ -109,13 +110,16 @@ impl Style for Latex {
 }
 
 pub(crate) fn page(derivation: &Derivation) -> String {
-    formulas(derivation).iter().map(|formula| format!("\\[\n{formula}\n\\]\n")).collect()
+    let page: String = formulas(derivation).iter().map(|formula| format!("\\[\n{formula}\n\\]\n")).collect();
+    let note = angles(&derivation.angles).map_or(String::new(), |note| format!("% {}\n", note.replace('π', "pi")));
+    page + &note.replace('−', "-")
 }
 
 /// Markdown, with the symbols in a table.
 pub(crate) fn markdown(derivation: &Derivation) -> String {
     let page: String = formulas(derivation).iter().map(|formula| format!("$$\n{formula}\n$$\n\n")).collect();
-    page + &symbols(&derivation.legend)
+    let note = angles(&derivation.angles).map_or(String::new(), |note| format!("\n{note}\n"));
+    page + &symbols(&derivation.legend) + &note
 }
 
 fn symbols(legend: &[Meaning]) -> String {

@@ -19,6 +19,14 @@ pub(crate) fn legend(symbols: &[Meaning], of_pi: &[(String, Rational)], style: &
             meaning.places.join("; ")
         ));
     }
+    if let Some(note) = angles(of_pi) {
+        lines.extend([String::new(), note]);
+    }
+    lines
+}
+
+/// A line about angles that were read as multiples of π, if there are any.
+pub(crate) fn angles(of_pi: &[(String, Rational)]) -> Option<String> {
     let mut angles: Vec<(String, String)> = Vec::new();
     for (written, multiple) in of_pi {
         let text = written.rsplit(' ').next().unwrap_or(written);
@@ -27,11 +35,8 @@ pub(crate) fn legend(symbols: &[Meaning], of_pi: &[(String, Rational)], style: &
             angles.push(known);
         }
     }
-    if !angles.is_empty() {
-        let all: Vec<String> = angles.iter().map(|(text, multiple)| format!("{text} as {multiple}")).collect();
-        lines.extend([String::new(), format!("angles of the file read as multiples of π: {}", all.join(", "))]);
-    }
-    lines
+    let all: Vec<String> = angles.iter().map(|(text, multiple)| format!("{text} as {multiple}")).collect();
+    (!all.is_empty()).then(|| format!("angles of the file read as multiples of π: {}", all.join(", ")))
 }
 
 /// π/2, −3π/4.

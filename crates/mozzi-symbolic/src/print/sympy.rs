@@ -1,6 +1,7 @@
 //! A Python module of SymPy expressions, with exact numbers.
 
 use super::code::delta;
+use super::legend::angles;
 use super::{Printer, Style};
 use crate::atom::Name;
 use crate::derivation::Derivation;
@@ -55,6 +56,7 @@ pub(crate) fn module(derivation: &Derivation) -> String {
     let printer = Printer { style: &Sympy, table: &derivation.table };
     let mut lines =
         vec!["from sympy import Matrix, Rational, cos, pi, sign, sin, sqrt, symbols".to_string(), String::new()];
+    lines.extend(angles(&derivation.angles).map(|note| format!("# {note}")));
     for (input, ids) in derivation.inputs.iter().filter(|(_, ids)| !ids.is_empty()) {
         let names: Vec<String> = ids.iter().map(|&id| printer.atom(id, 1)).collect();
         let tuple = if names.len() == 1 { format!("{},", names[0]) } else { names.join(", ") };

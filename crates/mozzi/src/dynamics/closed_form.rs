@@ -192,9 +192,11 @@ impl<S: Entry> ClosedForm<S> {
         &self.L * (&self.ad_Adtheta * (&self.W * J))
     }
 
-    /// c, base at rest.
+    /// c = −𝒜ᵀℒᵀ(𝒢ℒ[ad_𝒜θ̇](𝒲𝒱 + 𝒱_base) + `[ad_𝒱]`ᵀ𝒢𝒱), the forces of all velocities: Cθ̇ if the base is at rest.
     pub fn velocity_product(&self) -> DVector<S> {
-        (self.book_coriolis_matrix() + &self.armature_coriolis) * &self.dtheta
+        let turned = &self.L * (&self.ad_Adtheta * (&self.W * &self.V + &self.V_base));
+        let inner = &self.G * turned + self.ad_V.tr_mul(&(&self.G * &self.V));
+        &self.armature_coriolis * &self.dtheta - self.jacobians().tr_mul(&inner)
     }
 
     /// g = 𝒜ᵀℒᵀ𝒢ℒ𝒱̇_base.

@@ -94,6 +94,10 @@ fn the_kernels_equal_the_closed_form() {
             1000.0,
             "tau",
         );
+        let h = model.bias_forces(&theta, &dtheta, &everything).expect("lengths");
+        let terms = [form.velocity_product(), form.gravity_forces(), form.tip_forces()];
+        let size = terms.iter().map(DVector::amax).fold(0.0, f64::max);
+        close(&column(&h), &column(&terms.into_iter().sum()), size, 1000.0, "h = c + g + JᵀF");
         close(
             &column(&model.tip_forces(&theta, &applied).expect("lengths")),
             &column(&form.tip_forces()),
