@@ -46,6 +46,9 @@ fn errors_point_into_the_files_that_the_user_wrote() {
     let said = mozzi(&["info", &robot, "--xacro-arg", "lenght:=0.9", &package]);
     let said = String::from_utf8_lossy(&said.stderr).into_owned();
     assert!(said.contains("the argument `lenght` is given and not used, expected some of: length"), "{said}");
+    let plain = file(&folder, "plain.urdf", include_str!("../../mozzi-urdf/models/ur5.urdf"));
+    let said = String::from_utf8(mozzi(&["info", &plain, "--xacro-arg", "length:=3"]).stderr).expect("text");
+    assert!(said.contains("the argument `length` is given and not used: the file is no xacro"), "{said}");
     file(&folder.join("of rods"), "rod.xacro", &ROD.replace("value=\"${mass}\"", "value=\"${-mass}\""));
     let (code, why) = complaint(&["info", &robot, &package]);
     assert!(code != 0 && why.contains("rod.xacro:6:"), "{why}");

@@ -3,4 +3,5 @@
 
 mod long_chain;
 mod modern_robotics;
+mod refused;
 mod sin_cos;

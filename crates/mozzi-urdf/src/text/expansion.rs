@@ -28,7 +28,13 @@ pub(crate) fn prepare(source: Source, arguments: &Arguments) -> Result<Prepared,
         Some(xacro::is_unexpanded(&document, dialect))
     };
     if !xacro::is_program(&source.text, &source.name, parse) {
-        return Ok((source, Vec::new()));
+        let unused = |(name, _): &(String, String)| {
+            let message = format!("the argument `{name}` is given and not used: the file is no xacro");
+            let start = Walker::new(&source.text).advance(0);
+            Diagnostic::new(Finding::warning("xacro_warning", 0..0, message), start, source.clone(), dialect)
+        };
+        let warnings = arguments.values.iter().map(unused).collect();
+        return Ok((source, warnings));
     }
     let place = |files: &[File], origin: &Origin, finding| at(files, origin, finding, dialect);
     match expand_text(&source.name, &source.text, arguments) {
