@@ -4,7 +4,16 @@ import mozzi
 import numpy as np
 import pytest
 from conftest import assert_close
-from mozzi.controllers import ComputedTorque, Controller, Impedance, PdGravity, Saturated, TaskSpace, tracking_error
+from mozzi.controllers import (
+    ComputedTorque,
+    Controller,
+    Impedance,
+    PdGravity,
+    Saturated,
+    Standing,
+    TaskSpace,
+    tracking_error,
+)
 from mozzi.trajectories import Hold, Line, OfJoints, Profile, Timed
 
 START, GOAL = np.array([[0.3, -1.4, 1.6, -0.6, 0.9, 0.5], [1.1, -0.9, 1.0, -0.1, 1.4, -0.3]])
@@ -165,3 +174,21 @@ def test_what_is_wrong_is_named(ur5, motion):
     for other, kind in [(np.zeros((3, 6)), "ndarray"), (motion.at(0.0), "Desired")]:
         with pytest.raises(TypeError, match=f"motion is a {kind}, expected the Trajectory or Trajectories"):
             tracking_error(other, motion)
+
+
+def test_standing_on_feet():
+    anymal, feet = mozzi.models.anymal(), ["LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"]
+    pose = anymal.neutral_configuration
+    pose[7:] = [0.0, 0.7, -1.0] * 2 + [0.0, -0.7, 1.0] * 2
+    pose[6] -= min(anymal.forward_kinematics(pose, frame=foot)[2, 3] for foot in feet)
+    control = Standing(anymal, Hold(anymal, pose), feet, p=144.0, d=24.0)
+    tau = control(0.0, pose, np.zeros(anymal.n))
+    assert tau.shape == (anymal.n,) and not tau[:6].any() and tau[6:].any()
+    held = anymal.simulate(pose, None, 0.3, 150, torque=control, contacts=feet)
+    assert abs(held.theta - pose).max() < 1e-3
+    carried = held.contact_forces[-1, :, 2].sum()
+    assert carried == pytest.approx(-9.81 * anymal.mass_matrix(pose)[3, 3], rel=1e-3)
+    assert repr(control).startswith("<mozzi.controllers.Standing of 'anymal")
+    for wrong, words in [([], "feet"), (["LF_FOT"], "LF_FOT"), ([{"frame": "LF_FOOT", "mu": 1}], "unknown `mu`")]:
+        with pytest.raises((ValueError, KeyError, TypeError), match=words):
+            Standing(anymal, Hold(anymal, pose), wrong, p=144.0, d=24.0)

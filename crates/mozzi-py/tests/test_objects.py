@@ -9,6 +9,7 @@ import multiprocessing
 import os
 import pickle
 import pydoc
+import warnings
 
 import mozzi
 import numpy as np
@@ -180,3 +181,27 @@ def test_documentation_names_every_argument():
         for argument in inspect.signature(member).parameters:
             assert argument == "self" or argument in text, f"{name}: {argument}"
         assert "Returns" in text, name
+
+
+@pytest.mark.parametrize("ending", ["urdf", "xml", "sdf", "json"])
+def test_an_edited_robot_is_saved(tmp_path, ending):
+    robot = mozzi.models.ur5().with_payload("tool0", 2.0).with_locked_joints({"wrist_3_joint": 0.3})
+    file = tmp_path / f"robot.{ending}"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mozzi.LoadWarning)  # SDFormat and MJCF have other names
+        robot.save(file)
+        again = mozzi.Model.load(file)
+    theta = [0.1, -0.7, 0.9, 0.4, 1.1]
+    assert np.allclose(again.mass_matrix(theta), robot.mass_matrix(theta), rtol=1e-9)
+
+
+def test_a_robot_is_not_saved_as_another(tmp_path):
+    ur5 = mozzi.models.ur5()
+    with pytest.raises(ValueError, match="ends in `.usd`, expected .urdf, .xml"):
+        ur5.save(tmp_path / "robot.usd")
+    with pytest.raises(ValueError, match="json can express all of it"):
+        ur5.with_gravity([1.0, 0.0, -9.0]).save(tmp_path / "robot.urdf")
+    assert not list(tmp_path.iterdir())
+    lighter = ur5.with_parameters(ur5.parameters * 0.5)
+    lighter.save(tmp_path / "robot.json")
+    assert mozzi.Model.load(tmp_path / "robot.json").mass == pytest.approx(ur5.mass / 2)

@@ -224,6 +224,8 @@ class Model:
         """Report how a quantity is computed in the robot's own environment, as decided by the calls so far."""
     def screws(self) -> ScrewLists:
         """Return the book's lists of this robot: home frames, screw axes and spatial inertias of its N moving links."""
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the robot to a file: URDF, MJCF (.xml), SDFormat (.sdf) or mozzi's JSON, by the ending of its name."""
     def with_payload(self, frame: str, inertia: ArrayLike) -> Model:
         """Return a copy with a payload fixed to a frame."""
     def with_frame(self, name: str, on: str, T: ArrayLike) -> Model:
@@ -885,6 +887,12 @@ class Impedance(Controller):
     def __init__(
         self, model: Model, reference: Reference, frame: str | None = None, *, stiffness: ArrayLike, damping: ArrayLike,
         posture_p: ArrayLike | None = None, posture_d: ArrayLike | None = None
+    ) -> None: ...
+
+class Standing(Controller):
+    """Standing on feet, with contact forces within their friction cones (Kuindersma et al. 2016)."""
+    def __init__(
+        self, model: Model, reference: Reference, feet: Sequence[str | Mapping[str, Any]], *, p: ArrayLike, d: ArrayLike
     ) -> None: ...
 
 class Saturated:

@@ -10,6 +10,7 @@ controller          τ                                           error for an ex
 ``ComputedTorque``  M(θ)(θ̈_d + K_d ė + K_p e) + h(θ, θ̇)         ë + K_d ė + K_p e = 0
 ``TaskSpace``       Jᵀ(Λ(a + K_d 𝒱_e + K_p X_e) + η)            𝒱̇_e + K_d 𝒱_e + K_p X_e = 0
 ``Impedance``       Jᵀ(Λa + η + B𝒱_e + KX_e)                    Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕
+``Standing``        Mθ̈ + h + Jᵀf, f within friction cones        as near to ``ComputedTorque`` as feet allow
 ==================  ==========================================  ============================
 
 with e = θ_d ⊖ θ, X_e = log(T⁻¹T_d), 𝒱_e = [Ad_{T⁻¹T_d}]𝒱_d − 𝒱, and 𝓕 the wrench that the frame applies to the
@@ -28,7 +29,7 @@ environment. ``Saturated`` clamps any of them to the motors' effort limits.
 True
 """
 
-from ._mozzi import ComputedTorque, Controller, Impedance, PdGravity, Saturated, TaskSpace, tracking_error
+from ._mozzi import ComputedTorque, Controller, Impedance, PdGravity, Saturated, Standing, TaskSpace, tracking_error
 from ._results import Overload, TrackingError
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "Overload",
     "PdGravity",
     "Saturated",
+    "Standing",
     "TaskSpace",
     "TrackingError",
     "tracking_error",

@@ -50,7 +50,7 @@ const MEANT: [(&[&str], &str); 21] = [
         "`mozzi.Model.load(path)`; `from_urdf_string(text)` reads text",
     ),
     (&["view", "show", "visualize", "display", "plot"], "`play()`; `report(trajectory)` is the page of a motion"),
-    (&["save", "write", "to_urdf", "to_mjcf", "to_json", "export"], "`mozzi convert` on the command line writes files"),
+    (&["write", "to_urdf", "to_mjcf", "to_sdf", "to_json", "export"], "`save(path)`; the ending chooses the format"),
 ];
 
 #[pymethods]

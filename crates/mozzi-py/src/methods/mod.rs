@@ -14,6 +14,7 @@ mod positions;
 mod properties;
 pub mod quantity;
 mod report;
+mod save;
 mod states;
 
 pub use attach::add_to;

@@ -8,16 +8,17 @@ use crate::array::{shown, wrong_shape};
 use crate::failure::{of_motion, of_state};
 use crate::model::PyModel;
 use crate::numpy::Fresh;
-use mozzi::{FrameId, Model};
+use mozzi::{FrameId, Model, SE3};
 use mozzi_motion::Error;
-use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, TaskSpace};
-use mozzi_sim::Input;
+use mozzi_motion::controllers::{ComputedTorque, Gains, Law, PdGravity, Standing, TaskSpace};
+use mozzi_sim::{ContactPoint, Input};
 use pyo3::prelude::*;
 
 /// A controller: the motors' τ that make a robot follow a reference (Modern Robotics, chapter 11).
 ///
-/// It is a `PdGravity`, a `ComputedTorque`, a `TaskSpace` or an `Impedance`, called as `controller(t, theta, dtheta)`;
-/// `Model.simulate` takes it as `torque`. The controller's model may differ from the simulated robot.
+/// It is a `PdGravity`, a `ComputedTorque`, a `TaskSpace`, an `Impedance` or a `Standing`, called as
+/// `controller(t, theta, dtheta)`; `Model.simulate` takes it as `torque`. The controller's model may differ from the
+/// simulated robot.
 ///
 /// The errors are e = θ_d ⊖ θ and ė = θ̇_d − θ̇; for a frame, X_e = log(T⁻¹T_d) and 𝒱_e = [Ad_{T⁻¹T_d}]𝒱_d − 𝒱, in its
 /// own coordinates.
@@ -29,14 +30,15 @@ pub struct PyController {
 }
 
 #[derive(Clone)]
-enum ControlLaw {
+pub(super) enum ControlLaw {
     PdGravity(Gains),
     ComputedTorque(Gains),
+    Standing { gains: Gains, feet: Vec<ContactPoint> },
     TaskSpace { frame: FrameId, law: Law, posture: Gains },
 }
 
 impl PyController {
-    fn checked(model: Py<PyModel>, reference: Py<PyReference>, law: ControlLaw) -> PyResult<Self> {
+    pub(super) fn checked(model: Py<PyModel>, reference: Py<PyReference>, law: ControlLaw) -> PyResult<Self> {
         let (found, expected) = (reference.get().model().nq(), model.get().robot().model.nq());
         if found != expected {
             let expected = format!("{}: of the same robot", shown(&[expected]));
@@ -64,6 +66,9 @@ impl PyController {
         Ok(match self.law.clone() {
             ControlLaw::PdGravity(gains) => Box::new(PdGravity::new(model, reference, gains)?),
             ControlLaw::ComputedTorque(gains) => Box::new(ComputedTorque::new(model, reference, gains)?),
+            ControlLaw::Standing { gains, feet } => {
+                Box::new(Standing::new(model, reference, gains, feet, SE3::identity())?)
+            }
             ControlLaw::TaskSpace { frame, law, posture } => {
                 Box::new(TaskSpace::new(model, reference, frame, law, posture)?)
             }
@@ -128,6 +133,7 @@ impl PyController {
         let (kind, frame, first, second) = match &self.law {
             ControlLaw::PdGravity(Gains { p, d }) => ("PdGravity", None, ("p", &p[..]), ("d", &d[..])),
             ControlLaw::ComputedTorque(Gains { p, d }) => ("ComputedTorque", None, ("p", &p[..]), ("d", &d[..])),
+            ControlLaw::Standing { gains: Gains { p, d }, .. } => ("Standing", None, ("p", &p[..]), ("d", &d[..])),
             ControlLaw::TaskSpace { frame, law: Law::Acceleration { p, d }, .. } => {
                 ("TaskSpace", Some(*frame), ("p", &p[..]), ("d", &d[..]))
             }
@@ -143,7 +149,7 @@ impl PyController {
 }
 
 /// K_p and K_d of each velocity, from one number for all or one for each.
-fn gains(model: &Py<PyModel>, [p, d]: [(&'static str, &Bound<'_, PyAny>); 2]) -> PyResult<Gains> {
+pub(super) fn gains(model: &Py<PyModel>, [p, d]: [(&'static str, &Bound<'_, PyAny>); 2]) -> PyResult<Gains> {
     let n = model.get().robot().model.n();
     Ok(Gains { p: one_or_each(p.0, p.1, n)?, d: one_or_each(d.0, d.1, n)? })
 }

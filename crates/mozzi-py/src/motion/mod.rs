@@ -12,6 +12,7 @@ mod reference;
 mod repr;
 mod saturated;
 mod solutions;
+mod standing;
 mod states;
 mod tracking;
 
@@ -37,6 +38,7 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<controller::PyComputedTorque>()?;
     module.add_class::<controller::PyTaskSpace>()?;
     module.add_class::<controller::PyImpedance>()?;
+    module.add_class::<standing::PyStanding>()?;
     module.add_class::<saturated::PySaturated>()?;
     module.add_function(wrap_pyfunction!(tracking::tracking_error, module)?)
 }

@@ -1,0 +1,72 @@
+//! Writing a robot.
+
+use crate::describe::refused;
+use crate::failure::{LoadWarning, of_model};
+use crate::model::PyModel;
+use mozzi_urdf::{Written, json, mjcf, sdf};
+use pyo3::prelude::*;
+use std::ffi::CString;
+use std::path::PathBuf;
+
+/// The text in the format of a file's ending.
+fn written(ending: &str, model: &mozzi::Model) -> PyResult<Written> {
+    let robot = model.description();
+    let lossless = |text: String| Written { text, losses: Vec::new(), remarks: Vec::new() };
+    let not_written = |why: &dyn std::fmt::Display| refused(format!("{why}; .json can express all of it"));
+    match ending {
+        "json" => Ok(lossless(json::write(model))),
+        "sdf" => sdf::write(robot).map_err(|why| not_written(&why)),
+        "xml" => mjcf::write(robot).map_err(|why| not_written(&why)),
+        "urdf" => {
+            let mut found = lossless(mozzi_urdf::write(robot).map_err(|why| not_written(&why))?);
+            let names: Vec<&str> = robot.states.iter().map(|state| state.name.as_str()).collect();
+            found.losses.extend((!names.is_empty()).then(|| format!("the named states {}", names.join(", "))));
+            Ok(found)
+        }
+        other => Err(refused(format!("the path ends in `.{other}`, expected .urdf, .xml (MJCF), .sdf or .json"))),
+    }
+}
+
+#[pymethods]
+impl PyModel {
+    /// Write the robot to a file: URDF, MJCF (.xml), SDFormat (.sdf) or mozzi's JSON, by the ending of its name.
+    ///
+    /// JSON holds all of the robot's numbers. Shapes are in none; `mozzi convert` and `mozzi.Identification.write` keep
+    /// the text of a URDF.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     The file, which is replaced if it exists.
+    ///
+    /// Returns
+    /// -------
+    /// None
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the format cannot express the robot. Smaller losses are warnings.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import mozzi, pathlib, tempfile
+    /// >>> loaded = mozzi.models.ur5().with_payload("tool0", 2.0)
+    /// >>> file = pathlib.Path(tempfile.mkdtemp()) / "loaded.json"
+    /// >>> loaded.save(file)
+    /// >>> mozzi.Model.load(file).mass == loaded.mass
+    /// True
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let model = &self.robot().model;
+        let model = model.described().and_then(|robot| robot.build()).map_err(of_model)?;
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let Written { text, losses, .. } = written(ending, &model)?;
+        std::fs::write(&path, text)?;
+        for loss in losses {
+            let text = format!("{} cannot express {loss}", path.display());
+            let text = CString::new(text.replace('\0', "\\0")).map_err(refused)?;
+            PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 1)?;
+        }
+        Ok(())
+    }
+}
