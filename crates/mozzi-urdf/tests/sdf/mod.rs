@@ -3,7 +3,7 @@
 use mozzi::model::description::JointKind;
 use mozzi::random::Random;
 use mozzi::{Base, Description, Model, SE3};
-use mozzi_urdf::{Loaded, Policy, load, load_with, parse, parse_with};
+use mozzi_urdf::{LoadError, Loaded, Policy, load, load_with, parse, parse_with};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -284,11 +284,85 @@ fn a_folder_is_the_model_in_it() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sdf_folder");
     std::fs::create_dir_all(folder.join("part")).unwrap();
     std::fs::copy(model_file("part/model.sdf"), folder.join("part/model-1.7.sdf")).unwrap();
-    let config = "<model><name>part</name><sdf version='1.7'>model-1.7.sdf</sdf></model>";
+    // the newest, wherever it stands
+    let config =
+        "<model><name>part</name><sdf version='1.7'>model-1.7.sdf</sdf><sdf version='1.4'>old.sdf</sdf></model>";
+    std::fs::write(folder.join("part/old.sdf"), one("1.4", "fixed", "")).unwrap();
     std::fs::write(folder.join("part/model.config"), config).unwrap();
     for uri in ["model://part", "part", "part/model-1.7.sdf"] {
         std::fs::write(folder.join("nested.sdf"), text.replace("model://part/model.sdf", uri)).unwrap();
         let read = [model_file("nested.sdf"), folder.join("nested.sdf")].map(|path| load(path).unwrap().description);
         assert_eq!(read[0], read[1], "{uri}");
     }
+}
+
+/// The errors with their remedies.
+fn said(text: &str) -> String {
+    let Err(LoadError::Refused { diagnostics, .. }) = parse("r.sdf", text) else { panic!("accepted: {text}") };
+    diagnostics.iter().map(|found| format!("{found} {:?}\n", found.help())).collect()
+}
+
+/// Link b at 0.5 m on link a, by an attribute of its pose, and an axis along z in the attributes of `xyz`.
+fn placed(version: &str, attribute: &str, axis: &str) -> String {
+    format!(
+        "<sdf version='{version}'><model name='r'><link name='a'><pose>1 0 0 0 0 0</pose>{BODY}</link><link name='b'>\
+         <pose {attribute}>0.5 0 0 1.5707963267948966 0 0</pose>{BODY}</link><joint name='j' type='revolute'>\
+         <parent>a</parent><child>b</child><axis>{axis}</axis></joint></model></sdf>"
+    )
+}
+
+#[test]
+fn words_of_other_versions_are_read_or_refused() {
+    const Z: &str = "<xyz>0 0 1</xyz>";
+    for (version, attribute) in [("1.6", "relative_to='a'"), ("1.6", "frame='a'"), ("1.9", "relative_to='a'")] {
+        let robot = read(&placed(version, attribute, Z)).description;
+        let joint = robot.joints.iter().find(|joint| joint.name == "j").unwrap();
+        assert!((joint.origin.p.0[0] - 0.5).abs() < 1e-12, "{version} {attribute}: {:?}", joint.origin);
+    }
+    let axis_of = |version: &str, axis: &str| {
+        let robot = read(&placed(version, "", axis)).description;
+        let joint = robot.joints.into_iter().find(|joint| joint.name == "j").unwrap();
+        let JointKind::Screw(axis) = joint.kind else { panic!("{:?}", joint.kind) };
+        axis.twist().w.0
+    };
+    let in_model = "<xyz expressed_in='__model__'>0 0 1</xyz>";
+    for version in ["1.6", "1.8"] {
+        assert!((axis_of(version, in_model)[1] - 1.0).abs() < 1e-12, "{version}: {:?}", axis_of(version, in_model));
+        assert!((axis_of(version, Z)[2] - 1.0).abs() < 1e-12);
+    }
+    let words = said(&placed("1.9", "frame='a'", Z));
+    assert!(words.contains("frame=\"a\" is of versions before 1.7") && words.contains("relative_to"), "{words}");
+    let words = said(&placed("1.8", "", &format!("{Z}<use_parent_model_frame>1</use_parent_model_frame>")));
+    assert!(words.contains("use_parent_model_frame is of versions before 1.7"), "{words}");
+}
+
+#[test]
+fn degrees_and_static_models_are_named() {
+    let degrees = placed("1.9", "", "<xyz>0 0 1</xyz>").replace("1.5707963267948966", "90");
+    let warnings: Vec<String> = read(&degrees).warnings.iter().map(ToString::to_string).collect();
+    assert!(warnings.iter().any(|text| text.contains("an angle of 90 radians: in degrees?")), "{warnings:?}");
+    let table = "<model name='table'><static>true</static><link name='top'/></model>";
+    let arm = |part: &str| {
+        format!(
+            "<sdf version='1.9'><world name='w'>{table}<model name='arm'>{part}<link name='a'>{BODY}</link><link name='b'>\
+             {BODY}</link><joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>\
+             </joint></model></world></sdf>"
+        )
+    };
+    read(&arm(""));
+    let words = said(&arm("<pose relative_to='table::top'/>"));
+    assert!(words.contains("`table` is static, and static models are not read"), "{words}");
+    let words = said(&format!("<sdf version='1.9'>{table}</sdf>"));
+    assert!(words.contains("`table` is static, fixed in the world: delete its <static>"), "{words}");
+}
+
+#[test]
+fn written_names_are_not_sdformats_own() {
+    let moon = Description {
+        name: "world".into(),
+        ..read(&one("1.9", "revolute", "<axis><xyz>0 0 1</xyz></axis>")).description
+    };
+    let written = mozzi_urdf::sdf::write(&moon.with_gravity([0.0, 0.0, -1.62])).unwrap();
+    assert!(written.text.contains("<world name=\"default\">") && written.text.contains("<model name=\"robot\">"));
+    assert!(written.losses.iter().any(|loss| loss.contains("`world` → `robot`")), "{:?}", written.losses);
 }
