@@ -207,14 +207,6 @@ pub fn identify<'m>(
 }
 
 impl<'m> Identification<'m> {
-    /// Errors on blocks in time, each predicted by fits on the other blocks, pooled.
-    ///
-    /// # Errors
-    /// [`Error::NotExciting`] if the other blocks do not determine the unknowns.
-    pub fn cross_validate(&self, blocks: usize, stop: &dyn Fn() -> bool) -> Result<Errors, Error> {
-        Ok(cross_validated(&self.setup, &self.logs, self.tenths, blocks, stop)?.0)
-    }
-
     /// The forces of a log's samples, N × n, each predicted by a fit without its block of time.
     ///
     /// # Errors

@@ -218,6 +218,6 @@ def test_loading_by_name(ur5):
             call()
     with pytest.raises(FileNotFoundError):
         mozzi.Model.load("nowhere.urdf")
-    for name in ["gravity", "position_limits", "velocity_limits", "effort_limits", "parameters"]:
+    for name in ["gravity", "position_limits", "velocity_limits", "effort_limits"]:
         with pytest.raises(ValueError, match="read-only"):  # a copy: the change would be lost
             getattr(ur5, name)[0] = 0

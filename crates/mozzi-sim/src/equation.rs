@@ -170,13 +170,6 @@ impl<'m, I: Input> Equation<'m, I> {
         forward_dynamics_of(self.model)
     }
 
-    /// λ of the last evaluation, m numbers: see [`constrained_forward_dynamics`].
-    ///
-    /// [`constrained_forward_dynamics`]: mozzi::constraints::constrained_forward_dynamics
-    pub fn lambda(&self) -> &[f64] {
-        &self.lambda
-    }
-
     /// The energies of a state, with works: of the motors, lost in friction, given to the environment.
     ///
     /// # Panics

@@ -230,10 +230,4 @@ impl Decomposition {
         };
         (0..self.size.len()).map(of).collect()
     }
-
-    /// The unit direction that is determined least, as shares of unit columns.
-    pub fn weakest(&self) -> DVector<f64> {
-        let k = (0..self.s.len()).min_by(|&a, &b| self.s[a].total_cmp(&self.s[b])).unwrap_or(0);
-        self.v.column(k).clone_owned()
-    }
 }

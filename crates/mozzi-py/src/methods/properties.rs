@@ -124,11 +124,11 @@ impl PyModel {
         read_only(array(py, &[self.robot().model.joint_names().len()], limits)?)
     }
 
-    /// Inertial parameters π, read-only: ten numbers a body, five a joint; see `regressor` and `with_parameters`.
+    /// A copy of the inertial parameters π: ten numbers a body, five a joint; quantities take others as `parameters`.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let parameters = self.robot().model.parameters();
-        read_only(array(py, &[parameters.len()], parameters)?)
+        array(py, &[parameters.len()], parameters)
     }
 
     /// Names of `parameters`.
