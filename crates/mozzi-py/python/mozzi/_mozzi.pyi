@@ -673,7 +673,7 @@ class Model:
         """Number of positions: n, plus one for each quaternion, of a floating base, a ball or a free joint."""
     @property
     def parameters(self) -> Array:
-        """A copy of the inertial parameters π: ten numbers a body, five a joint; quantities take others as `parameters`."""
+        """A copy of the inertial parameters π: ten numbers a body, five a joint; see `regressor`."""
     @property
     def link_names(self) -> list[str]:
         """Names of the links, in the order of the file."""

@@ -124,7 +124,7 @@ impl PyModel {
         read_only(array(py, &[self.robot().model.joint_names().len()], limits)?)
     }
 
-    /// A copy of the inertial parameters π: ten numbers a body, five a joint; quantities take others as `parameters`.
+    /// A copy of the inertial parameters π: ten numbers a body, five a joint; see `regressor`.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let parameters = self.robot().model.parameters();
