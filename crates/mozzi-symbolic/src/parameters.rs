@@ -7,7 +7,7 @@ use crate::read::{At, NotRead, Part, agree, read_urdf};
 use crate::symbol::{Symbol, with_table};
 use mozzi::model::description::JointKind;
 use mozzi::{Description, Model, SE3, SO3, SpatialInertia, Vec3};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The kinds of numbers that become symbols.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,6 +88,8 @@ pub(crate) struct Parameters {
     coordinates: HashMap<(String, bool), usize>,
     is_gravity_along_axis: bool,
     pub legend: Vec<Meaning>,
+    /// Names of the legend in code.
+    taken: HashSet<String>,
     /// Angles of the file that were taken for a multiple of π, with the multiple.
     pub angles: Vec<(String, Rational)>,
     /// The sum of the differences.
@@ -151,6 +153,7 @@ impl Parameters {
             coordinates,
             is_gravity_along_axis: robot.gravity.iter().filter(|x| **x != 0.0).count() == 1,
             legend: Vec::new(),
+            taken: HashSet::new(),
             angles: Vec::new(),
             angle_error: 0.0,
         }
@@ -281,7 +284,7 @@ impl Parameters {
             }
             None => {
                 let mut name = name;
-                while self.legend.iter().any(|known| known.plain_name() == plain_name(&name)) {
+                while !self.taken.insert(plain_name(&name)) {
                     name.part.push('\'');
                 }
                 let atom = Atom::Parameter { name: name.clone(), class, value: size.clone() };

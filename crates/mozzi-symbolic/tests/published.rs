@@ -165,7 +165,7 @@ fn read(text: &str, values: &BTreeMap<String, f64>, names: &BTreeMap<&str, usize
     (value, reader.operations + reader.used.iter().filter_map(|word| names.get(word)).sum::<usize>())
 }
 
-/// What the words of the equations are at a state.
+/// The values of the equations' words at a state.
 fn values(model: &mozzi::Model, theta: &[f64], dtheta: &[f64]) -> BTreeMap<String, f64> {
     let mut values = BTreeMap::from([("g".to_string(), model.gravity().norm())]);
     let mut add = |name: String, value: f64| values.insert(name, value);

@@ -1,4 +1,4 @@
-//! What is refused, and by which words: checks of a description, edits that cannot be, arguments of a wrong kind.
+//! Refusals and their words: descriptions that cannot be built, impossible edits, wrong arguments.
 
 use mozzi::model::description::{
     Anchor, Closure, Constraint, ConstraintKind, Gear, Joint, JointKind, JointState, Mimic, NamedState,

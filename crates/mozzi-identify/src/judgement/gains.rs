@@ -152,7 +152,7 @@ pub fn common(gains: &[Gain]) -> Option<f64> {
     factors.sort_by(f64::total_cmp);
     let (low, high) = (*factors.first()?, *factors.last()?);
     let middle = factors[factors.len() / 2];
-    let (heavier, lighter) = (BY_MASSES.1, BY_MASSES.0);
+    let (lighter, heavier) = BY_MASSES;
     let is_common = factors.len() >= 2 && 3 * factors.len() >= gains.len() && low > 0.0 && high < SHARED * low;
     (is_common && !(lighter..=heavier).contains(&middle)).then_some(middle)
 }

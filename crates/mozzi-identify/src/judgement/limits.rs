@@ -3,7 +3,7 @@
 use crate::signals::Samples;
 use crate::{Finding, Log};
 use core::f64::consts::TAU;
-use mozzi::{Freedom, Model};
+use mozzi::Model;
 
 /// Root mean squares above this many limits of effort or velocity, and positions above this many limits and a turn.
 const BEYOND: f64 = 3.0;
@@ -11,7 +11,7 @@ const BEYOND: f64 = 3.0;
 /// A warning for each kind of signal; `has_forces` is false if currents were logged.
 pub fn check(model: &Model, log: &Log, samples: &Samples, has_forces: bool) -> Vec<Finding> {
     let n = model.n();
-    if model.configuration_space().places().iter().any(|place| place.freedom != Freedom::One) || samples.count() == 0 {
+    if !model.configuration_space().is_flat() || samples.count() == 0 {
         return Vec::new();
     }
     let column = |table: &[f64], j: usize| table.iter().skip(j).step_by(n).copied().collect::<Vec<f64>>();

@@ -9,7 +9,6 @@ use crate::mend::is_revolute;
 use crate::setup::Setup;
 use crate::signals::Samples;
 use crate::{Errors, Finding, Identification};
-use mozzi::Freedom;
 
 /// Fits with a smaller error over force are not questioned.
 const GOOD: f64 = 0.02;
@@ -38,8 +37,10 @@ pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option
     let model = setup.columns.model;
     let n = model.n();
     let is_bad = |errors: &Errors| errors.normalized(&errors.consistent) > GOOD;
-    let is_one = model.configuration_space().places().iter().all(|place| place.freedom == Freedom::One);
-    if !is_one || !setup.columns.choice.links || !found.left_out.as_ref().is_some_and(is_bad) {
+    if !model.configuration_space().is_flat()
+        || !setup.columns.choice.links
+        || !found.left_out.as_ref().is_some_and(is_bad)
+    {
         return None;
     }
     let few = thinned(samples, n);

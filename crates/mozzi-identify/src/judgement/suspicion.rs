@@ -5,7 +5,7 @@ use super::mistake::Mistake;
 use crate::signals::{Cutoff, Filter, Samples, prepare};
 use crate::{Error, Finding, Level, Log};
 use mozzi::quantities::{InverseDynamics, Query};
-use mozzi::{Environment, Freedom, Model, Vec3, fast};
+use mozzi::{Environment, Model, Vec3, fast};
 
 /// The logarithms of the joints' squared errors must fall by this much in all before a mistake is reported.
 const CLEAR: f64 = 1.5;
@@ -63,8 +63,7 @@ pub fn check(model: &Model, log: &Log, filter: &Filter, samples: &Samples) -> Re
 /// # Errors
 /// [`Error::Model`].
 fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>, Error> {
-    let places = model.configuration_space().places();
-    if places.iter().any(|place| place.freedom != Freedom::One) || samples.count() < 20 {
+    if !model.configuration_space().is_flat() || samples.count() < 20 {
         return Ok(Vec::new());
     }
     let names: Vec<&str> = model.velocity_names().collect();

@@ -50,7 +50,7 @@ fn another_density() {
     );
 }
 
-/// The same robot as a part of another: `left_` before all its names.
+/// Puts `left_` before all names, as where the robot is a part of another.
 fn prefixed(robot: &mut Description) {
     let prefix = |name: &mut String| *name = format!("left_{name}");
     robot.links.iter_mut().for_each(|link| prefix(&mut link.name));
