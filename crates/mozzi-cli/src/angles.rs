@@ -63,6 +63,13 @@ pub fn in_radians(unit: &str) -> String {
     if are_degrees() { unit.replace("deg", "rad") } else { unit.to_string() }
 }
 
+/// Files are in radians, whatever the flags are in.
+pub fn of_file(file: &str) {
+    if are_degrees() {
+        note(&format!("{file} is read in radians: --deg is for the angles of flags and of printed text"));
+    }
+}
+
 /// Questions angles, in radians, that are more than two turns: they may be meant in degrees.
 pub fn question(flag: &str, text: &str, found: &[f64], are_angles: &[bool]) {
     let is_large = |(x, is_angle): (&f64, &bool)| *is_angle && x.abs() > 4.0 * std::f64::consts::PI;

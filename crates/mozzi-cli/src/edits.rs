@@ -1,8 +1,9 @@
 //! `--payload`, `--inertia`, `--lock`, `--pin`: edits of the robot before it is used.
 
-use crate::angles::turns;
-use crate::failure::{Failure, Result};
+use crate::angles::{question, turns};
+use crate::failure::{self, Failure, Result};
 use crate::numbers::{angle, array, number, numbers};
+use crate::text::about;
 use crate::workload;
 use clap::Args;
 use mozzi::linalg::Sym3;
@@ -23,6 +24,8 @@ pub struct EditArguments {
     lock: Vec<String>,
 }
 
+/// A centre of mass that is so far from its frame is questioned, m.
+const FAR: f64 = 10.0;
 const INERTIA: [&str; 10] = ["m", "c_x", "c_y", "c_z", "I_xx", "I_xy", "I_xz", "I_yy", "I_yz", "I_zz"];
 
 impl EditArguments {
@@ -104,7 +107,9 @@ pub fn locks<'t>(texts: &'t [String], model: &Model) -> Result<Vec<(&'t str, f64
         }
         let is_turning = model.joints().any(|joint| joint.name == name && turns(joint.kind));
         let place = format!("--lock {name}");
-        found.push((name, if is_turning { angle(place, position)? } else { number(place, position)? }));
+        let x = if is_turning { angle(&place, position)? } else { number(&place, position)? };
+        question(&place, position, &[x], &[is_turning]);
+        found.push((name, x));
     }
     Ok(found)
 }
@@ -115,7 +120,14 @@ pub fn payload(place: &str, list: &str) -> Result<SpatialInertia> {
     let found = list.len();
     list.resize(INERTIA.len(), 0.0);
     match (found, list.try_into()) {
-        (1 | 4 | 10, Ok(all)) => inertia(place, all),
+        (1 | 4 | 10, Ok(all)) => {
+            let [_, x, y, z, ..]: [f64; 10] = all;
+            let distance = Vec3([x, y, z]).norm();
+            if distance > FAR {
+                failure::note(&format!("{place} has its centre of mass {} m away; it is in m", about(distance)));
+            }
+            inertia(place, all)
+        }
         _ => Err(Failure::wrong(format!(
             "{place} has {found} entries, expected m, m and c, or all of {}",
             INERTIA.join(", ")

@@ -1,9 +1,9 @@
 //! Goals of the end effector: by flags, or tables in CSV files with columns x y z of the origin, and qw qx qy qz or
 //! roll pitch yaw of the orientation, in {s}.
 
-use crate::angles::question;
+use crate::angles::{self, question};
 use crate::failure::{Failure, Result};
-use crate::numbers::{angles, array, number, wrong_number};
+use crate::numbers::{self, array, number, wrong_number};
 use crate::text_table::TextTable;
 use clap::Args;
 use mozzi::{SE3, SO3, Vec3};
@@ -32,7 +32,7 @@ impl GoalArguments {
         let position = self.position.as_deref().map(|text| array("--position", text, ["x", "y", "z"])).transpose()?;
         let R = match (&self.rpy, &self.quaternion) {
             (Some(text), _) => {
-                let found = angles("--rpy", text, &[true; 3])?;
+                let found = numbers::angles("--rpy", text, &[true; 3])?;
                 let [roll, pitch, yaw] = found[..] else {
                     return Err(wrong_number("--rpy", found.len(), &["roll", "pitch", "yaw"]));
                 };
@@ -62,10 +62,20 @@ pub fn read(file: &str) -> Result<Vec<(u64, Goal)>> {
             unknown + 1
         )));
     }
+    if let Some(twice) = (1..header.len()).find(|&k| header[..k].contains(&header[k])) {
+        let (name, first) = (&header[twice], header.iter().position(|cell| *cell == header[twice]).unwrap_or(0) + 1);
+        let second = twice + 1;
+        return Err(Failure::wrong(format!(
+            "{file}:1: columns {first} and {second} are both called `{name}`, expected one"
+        )));
+    }
     let position = group(file, &header, POSITION, expected)?;
     let (quaternion, rpy) = (group(file, &header, QUATERNION, expected)?, group(file, &header, RPY, expected)?);
     if quaternion.is_some() && rpy.is_some() {
         return Err(Failure::wrong(format!("{file}:1: two orientations, expected qw qx qy qz or roll pitch yaw")));
+    }
+    if rpy.is_some() {
+        angles::of_file(file);
     }
     let (mut goals, commas) = (Vec::new(), text.has_decimal_commas());
     text.rows(false, |line, record| {

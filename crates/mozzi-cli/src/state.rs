@@ -178,18 +178,26 @@ pub fn check_frames(model: &Model, frames: impl Iterator<Item = FrameId>) -> Res
     Ok(())
 }
 
-/// nq numbers, or those of a state by its name; the robot's start if the flag is not given.
+/// nq numbers, or those of a state by its name; the robot's start if the flag is not given, and for what it leaves out.
 pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
+    let start = model.start().theta;
+    match text {
+        None => Ok(start),
+        Some(text) => positions_from(start, flag, text, model),
+    }
+}
+
+/// nq numbers, or those of a state by its name; what is left out stays as it is.
+pub fn positions_from(theta: Vec<f64>, flag: &str, text: &str, model: &Model) -> Result<Vec<f64>> {
     let is_name =
         |text: &str| model.state_names().len() > 0 && numbers::angle(flag, text).is_err() && !text.contains(',');
     match text {
-        None => Ok(model.start().theta),
-        Some(text) if text.contains('=') => named_positions(flag, text, model),
-        Some(name) if is_name(name) => Ok(model.state(name)?.theta),
-        Some(text) => {
+        text if text.contains('=') => named_positions(theta, flag, text, model),
+        name if is_name(name) => Ok(model.state(name)?.theta),
+        text => {
             let are_angles = angles::of_positions(model);
             if gives_joints_only(text, model) {
-                let mut theta = model.start().theta;
+                let mut theta = theta;
                 theta[7..].copy_from_slice(&numbers::angles(flag, text, &are_angles[7..])?);
                 angles::question(flag, text, &theta[7..], &are_angles[7..]);
                 return Ok(theta);
@@ -200,14 +208,14 @@ pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f6
     }
 }
 
-/// True for the joints of a floating base alone; the base then is where the robot starts.
+/// True for the joints of a floating base alone; the base then stays where it is.
 fn gives_joints_only(text: &str, model: &Model) -> bool {
     model.is_floating() && model.nq() > 7 && numbers::count(text) == model.nq() - 7
 }
 
-/// `elbow=90deg,wrist=0.1`: these joints, the others at the robot's start.
-fn named_positions(flag: &str, text: &str, model: &Model) -> Result<Vec<f64>> {
-    let (mut theta, names) = (model.start().theta, model.position_names().collect::<Vec<_>>());
+/// `elbow=90deg,wrist=0.1`: these joints, the others as they are.
+fn named_positions(mut theta: Vec<f64>, flag: &str, text: &str, model: &Model) -> Result<Vec<f64>> {
+    let names: Vec<&str> = model.position_names().collect();
     let are_angles = angles::of_positions(model);
     for entry in text.split(',').filter(|entry| !entry.trim().is_empty()) {
         let Some((name, value)) = entry.split_once('=') else {

@@ -65,6 +65,7 @@ fn wrong_goals() {
     let folder = folder("ik_wrong");
     for (name, text, words) in [
         ("missing.csv", "x,y,z,qw,qx,qy\n", "column `qz` is missing"),
+        ("double.csv", "x,y,z,x\n", "columns 1 and 4 are both called `x`"),
         ("unknown.csv", "x,y,z,qw,qx,qy,qz,f\n", "column 8 is called `f`"),
         ("empty.csv", "x,y,z,qw,qx,qy,qz\n", "no rows"),
         ("long.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,2,0,0,0\n", "long.csv:2: qw qx qy qz: the quaternion's length is 2"),

@@ -140,6 +140,54 @@ fn ways_of_the_end_effector_and_through_points() {
     assert_close(&rows(&found["dtheta"])[5], &[0.0; 6], 1e-12);
 }
 
+/// The largest values do not depend on the rows that are written; steps are kept, and the last row is the end.
+#[test]
+fn limits_are_judged_between_the_rows() {
+    let to = ["trajectory", "ur5", "--to", "1,-1,1,0,0.5,0"];
+    let with = |more: &[&str]| common::mozzi(&[&to[..], more].concat());
+    for step in ["0.01", "0.3", "1e9"] {
+        let output = with(&["--time", "0.3", "--step", step]);
+        let (page, said) = (String::from_utf8(output.stdout), String::from_utf8(output.stderr));
+        let (page, said) = (page.expect("text"), said.expect("text"));
+        assert!(page.contains("largest velocity: 6.25 rad/s, 1") && page.contains("182"), "{step}: {page}");
+        assert!(said.contains("velocity limit: `shoulder_pan_joint` reaches 6.25, beyond its limit 3.14"), "{said}");
+    }
+    let found = json(&[&to[..], &["--step", "0.008", "--time", "0.5"]].concat());
+    let t = numbers(&found["t"]);
+    assert_eq!((t.len(), t[1], t[62], t[63]), (64, 0.008, 62.0 * 0.008, 0.5));
+    assert_close(&rows(&found["dtheta"])[63], &[0.0; 6], 1e-12);
+    // joints that are not named stay where they are
+    let from = ["--from", "1,1,1,1,1,1", "--to", "shoulder_pan_joint=90deg", "--time", "2"];
+    let found = rows(&json(&[&["trajectory", "ur5"], &from[..]].concat())["theta"]);
+    assert_close(&found[found.len() - 1], &[std::f64::consts::FRAC_PI_2, 1.0, 1.0, 1.0, 1.0, 1.0], 1e-12);
+}
+
+#[test]
+fn doubtful_motions_are_questioned() {
+    let folder = folder("doubtful");
+    let said = |arguments: &[&str]| String::from_utf8(common::mozzi(arguments).stderr).expect("text");
+    let via = file(&folder, "via.csv", "t,theta_1,theta_2\n5,0,0\n6,1,1\n8,2,0\n");
+    let told = said(&["trajectory", "two_link_planar", "--via", &via, "--time", "5", "--deg"]);
+    for words in ["begins at t = 5 s, the motion at 0", "--time makes the 3 s of", "is read in radians"] {
+        assert!(told.contains(words), "{told}");
+    }
+    let told = said(&[&WAY[..], &["--max-velocity", "180", "--max-acceleration", "inf"]].concat());
+    assert!(told.contains("--max-velocity is 180 for `shoulder_pan_joint`, above the limit 3.14"), "{told}");
+    let told = said(&["compute", "ur5", "g", "--lock", "elbow_joint=90", "--payload", "5,100,0,0"]);
+    assert!(told.contains("--lock elbow_joint is in radians, and 90 rad are 14.3 turns"), "{told}");
+    assert!(told.contains("has its centre of mass 100 m away"), "{told}");
+    let goals = file(&folder, "goals.csv", "x,y,z,roll,pitch,yaw\n0.5,0.2,0.4,180,0,0\n");
+    let told = said(&["ik", "ur5", "--in", &goals, "--deg"]);
+    assert!(told.contains("is read in radians"), "{told}");
+    let (_, why) = complaint(&["trajectory", "two_link_planar", "--to", "1e300,1", "--time", "1"]);
+    assert!(why.contains("at t = ") && why.contains("is not a finite number"), "{why}");
+    let (_, why) = complaint(&[&WAY[..], &["--out", "o.json"]].concat());
+    assert!(why.contains("o.json: only CSV is written here"), "{why}");
+    let line = ["trajectory", "ur5", "--to", "1,-1,1,0,0.5,0", "--path", "line", "--time", "3"];
+    let (_, why) = complaint(&line);
+    assert!(why.contains("a singular position, or a joint at its limit"), "{why}");
+}
+
 #[test]
 fn methods_and_limits() {
     let swing = ["simulate", "double_pendulum", "--theta", "2,1", "--time", "1"];

@@ -36,6 +36,14 @@ fn an_expansion_is_the_robot_that_every_command_opens() {
 }
 
 #[test]
+fn arguments_that_no_file_reads_are_told() {
+    let folder = folder("xacro-arguments");
+    let (robot, package) = arm(&folder);
+    let said = String::from_utf8(mozzi(&["xacro", &robot, "bogus:=1", &package]).stderr).expect("text");
+    assert!(said.contains("the argument `bogus` is given and not used"), "{said}");
+}
+
+#[test]
 fn errors_point_into_the_files_that_the_user_wrote() {
     let folder = folder("xacro-errors");
     let (robot, package) = arm(&folder);

@@ -33,10 +33,12 @@ pub enum Error {
         iterations: usize,
     },
     /// A frame cannot follow its path.
-    #[error("at s = {s} of the path: {source}")]
+    #[error("at s = {s} of the path: {why}: {source}")]
     OffPath {
         /// Where on the path, 0 to 1.
         s: f64,
+        /// The likely cause.
+        why: String,
         /// Why not: [`Error::NotReached`].
         source: Box<Error>,
     },

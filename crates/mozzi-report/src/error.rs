@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum Error {
     /// A column of the motion has the wrong length.
-    #[error("the motion's {what} has {found} numbers, expected {expected}: {rows} rows of {width}")]
+    #[error("the motion {}, expected {expected}: {rows} rows of {width}", numbers(what, *found))]
     Motion {
         /// The column: `theta`, `tau`, …
         what: &'static str,
@@ -37,4 +37,8 @@ pub enum Error {
     /// An error of mozzi at a state.
     #[error(transparent)]
     Model(#[from] mozzi::Error),
+}
+
+fn numbers(what: &str, found: usize) -> String {
+    if found == 0 { format!("has no {what}") } else { format!("has {found} numbers of {what}") }
 }

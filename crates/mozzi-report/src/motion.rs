@@ -220,7 +220,7 @@ mod tests {
         let model = mozzi_urdf::open("ur5").and_then(mozzi_urdf::Loaded::build).expect("embedded");
         let motion = Motion { t: vec![0.0, 1.0], theta: vec![0.0; 4], ..Motion::default() };
         let message = motion.to_json(&model).expect_err("too short").to_string();
-        assert_eq!(message, "the motion's theta has 4 numbers, expected 12: 2 rows of 6");
+        assert_eq!(message, "the motion has 4 numbers of theta, expected 12: 2 rows of 6");
         let motion = Motion { t: vec![0.0, -1.0], theta: vec![0.0; 12], ..Motion::default() };
         let message = motion.to_json(&model).expect_err("backwards").to_string();
         assert_eq!(message, "the motion's time is -1 s in row 2, expected times that do not decrease");

@@ -80,7 +80,7 @@ pub use report::spelling::{counted, did_you_mean};
 pub use report::visible::visible;
 pub use report::why::why;
 pub use settings::{Policy, Settings};
-pub use text::expansion::{expanded, taken_from_host};
+pub use text::expansion::{expanded, expanded_with_warnings, taken_from_host};
 pub use urdf::expressible::expressible;
 pub use urdf::write::{NotUrdf, write};
 pub use written::{NotWritten, Written};

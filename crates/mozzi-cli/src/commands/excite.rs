@@ -4,8 +4,10 @@ use crate::angles;
 use crate::columns::{Columns, save};
 use crate::edits;
 use crate::failure::{self, Failure, Result};
+use crate::limits;
 use crate::numbers::{self, array, number, one_or_each};
 use crate::robot::FileArguments;
+use crate::rows;
 use crate::tables::format::Format;
 use crate::text::{Page, table};
 use crate::{interrupt, json};
@@ -25,7 +27,7 @@ pub struct ExciteArguments {
     /// Write the motion to a CSV file: t, theta_1 … tau_n
     #[arg(long, value_name = "FILE.csv")]
     out: Option<String>,
-    /// Time between two rows of OUT, s
+    /// Time between two rows of OUT, s; the last is the end
     #[arg(long, value_name = "SECONDS", default_value = "0.01")]
     step: String,
     /// Harmonics of the Fourier series
@@ -104,16 +106,11 @@ pub fn run(arguments: &ExciteArguments) -> Result<String> {
             ));
         }
     }
-    let step = number("--step", &arguments.step)?;
-    if !(step > 0.0 && options.duration / step < 1e7) {
-        return Err(Failure::wrong(format!(
-            "--step is {step}, expected a positive number of seconds that gives at most 10⁷ rows"
-        )));
-    }
+    let times = rows::times(&arguments.step, options.duration, 1 + 4 * model.n())?;
     interrupt::listen();
     let found = excite(&model, &options, &interrupt::is_requested)?;
     if let Some(file) = &arguments.out {
-        let text = rows(&model, &found, options.duration, step)?.text();
+        let text = columns(&model, &found, &times)?.text();
         if file == "-" {
             return Ok(text);
         }
@@ -131,10 +128,8 @@ impl ExciteArguments {
     fn options(&self, model: &Model) -> Result<ExciteOptions> {
         let mut options = ExciteOptions::new(model, number("--duration", &self.duration)?);
         let (rates, none) = (angles::of_velocities(model), vec![false; model.n()]);
-        let list = |flag: &str, text: &Option<String>, to: &mut Vec<f64>, are_angles: &[bool]| -> Result<()> {
-            if let Some(text) = text {
-                *to = one_or_each(flag, text, are_angles)?;
-            }
+        let list = |flag: &str, text: &Option<String>, own: &mut Vec<f64>, are_angles: &[bool]| -> Result<()> {
+            *own = limits::of_flag(model, flag, text.as_deref(), core::mem::take(own), are_angles)?;
             Ok(())
         };
         list("--max-velocity", &self.max_velocity, &mut options.limits.velocity, &rates)?;
@@ -143,7 +138,9 @@ impl ExciteArguments {
             list("--max-torque", &self.max_torque, &mut options.limits.torque, &none)?;
             options.noise = options.limits.torque.iter().map(|t| 0.01 * t).collect();
         }
-        list("--noise", &self.noise, &mut options.noise, &none)?;
+        if let Some(text) = &self.noise {
+            options.noise = one_or_each("--noise", text, &none)?;
+        }
         let positions = angles::of_positions(model);
         for text in &self.range {
             let (name, pair) = edits::split("--range", text, "JOINT=LOW,HIGH")?;
@@ -194,21 +191,18 @@ impl ExciteArguments {
 }
 
 /// The motion with the robot's own torques.
-fn rows(model: &Model, found: &Excitation, duration: f64, step: f64) -> Result<Columns> {
-    let count = (duration / step).round() as usize;
-    let (mut t, mut groups): (Vec<f64>, [Vec<Vec<f64>>; 4]) = Default::default();
-    for k in 0..=count {
-        let at = (k as f64 * step).min(duration);
-        let [theta, dtheta, ddtheta] = found.at(at);
+fn columns(model: &Model, found: &Excitation, times: &[f64]) -> Result<Columns> {
+    let mut groups: [Vec<Vec<f64>>; 4] = Default::default();
+    for &t in times {
+        let [theta, dtheta, ddtheta] = found.at(t);
         let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment())?;
-        t.push(at);
         groups
             .iter_mut()
             .zip([theta, dtheta, ddtheta, tau.as_slice().to_vec()])
             .for_each(|(group, row)| group.push(row));
     }
     let mut columns = Columns::default();
-    columns.add("t", t);
+    columns.add("t", times.to_vec());
     for (name, rows) in ["theta", "dtheta", "ddtheta", "tau"].into_iter().zip(&groups) {
         columns.add_group(model, name, rows);
     }

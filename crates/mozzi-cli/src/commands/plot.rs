@@ -98,7 +98,12 @@ enum View {
 pub fn run(arguments: &PlotArguments) -> Result<String> {
     match &arguments.what {
         What::Trajectory(arguments) => of_motion(arguments, pictures::trajectories),
-        What::Energy(arguments) => of_motion(arguments, pictures::energy),
+        What::Energy(arguments) => of_motion(arguments, |model, motion| {
+            if motion.kinetic_energy.is_none() {
+                failure::note("a motion has no dtheta: its kinetic energy is not drawn");
+            }
+            pictures::energy(model, motion)
+        }),
         What::Phase(arguments) => of_motion(arguments, pictures::phase),
         What::Convergence(arguments) => convergence(arguments),
         What::Ellipsoids(arguments) => ellipsoids(arguments),

@@ -5,14 +5,15 @@ use crate::columns::{Columns, save};
 use crate::failure::{self, Failure, Result};
 use crate::goals::GoalArguments;
 use crate::json;
-use crate::numbers::{number, one_or_each};
+use crate::limits;
+use crate::numbers::number;
 use crate::progress::Progress;
 use crate::robot::{RobotArguments, Units};
-use crate::state::positions;
+use crate::rows;
+use crate::state::{positions, positions_from};
 use crate::tables::format::Format;
 use crate::tables::{motion, read as table_file};
 use crate::text::{Decimals, Page, about, scalar, table};
-use crate::workload::{self, BINARY, TEXT};
 use clap::{Args, ValueEnum};
 use mozzi::{Model, SE3};
 use mozzi_motion::Goal;
@@ -28,14 +29,14 @@ pub struct TrajectoryArguments {
     robot: RobotArguments,
     /// Initial positions, or the name of a state [default: the robot's start, else joints at 0 and a floating base
     /// at {s}]
-    #[arg(long, visible_aliases = ["theta", "q"], value_name = "θ1,θ2,…", conflicts_with = "via")]
+    #[arg(long, visible_aliases = ["theta", "q"], alias = "start", value_name = "θ1,θ2,…", conflicts_with = "via")]
     from: Option<String>,
-    /// Final positions, or the name of a state
-    #[arg(long, value_name = "θ1,θ2,…", conflicts_with = "via")]
+    /// Final positions, or the name of a state; JOINT=POSITION,… leaves the other joints where they are
+    #[arg(long, aliases = ["goal", "target"], value_name = "θ1,θ2,…", conflicts_with = "via")]
     to: Option<String>,
     /// Via points in a table with columns theta_1 …; with a column t, passed at these times by a spline at rest at
     /// both ends, or at the velocities dtheta_1 … and accelerations ddtheta_1 … of the table
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, alias = "waypoints", value_name = "FILE")]
     via: Option<String>,
     /// The path: of the joints, or of the end effector to the pose of --to or of --position and --rpy
     #[arg(long, value_name = "PATH", default_value = "joints", conflicts_with = "via")]
@@ -63,7 +64,7 @@ pub struct TrajectoryArguments {
     /// Torque limits, N m or N [default: the robot's]
     #[arg(long, value_name = "LIST")]
     max_torque: Option<String>,
-    /// Time between two rows, s
+    /// Time between two rows, s; the last is the end
     #[arg(long, visible_alias = "dt", value_name = "SECONDS", default_value = "0.01")]
     step: String,
     /// Write the motion to a CSV file ("-": standard output): t, theta_1 … tau_n
@@ -87,7 +88,7 @@ enum Shaped {
     Cubic,
     /// Velocity and acceleration are zero at both ends
     Quintic,
-    /// Constant acceleration, velocity, deceleration
+    /// Constant acceleration, velocity, deceleration, in the fractions of --ramp-fraction; `fastest` finds the ramps
     Trapezoidal,
     /// Time-optimal within the limits of velocity, acceleration and torque
     Fastest,
@@ -95,8 +96,6 @@ enum Shaped {
 
 /// Rows of the table on the screen.
 const SHOWN: usize = 10;
-/// Largest number of rows of a motion, all of which are in memory.
-const MOST_ROWS: f64 = 1e7;
 /// Number of points at which limits are checked.
 const PLACES: usize = 500;
 
@@ -110,39 +109,35 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
         }
         other => other,
     })?;
-    let step = number("--step", &arguments.step)?;
-    let count = motion.duration() / step;
-    if !(step > 0.0) || count > MOST_ROWS {
-        let bytes = count * (1 + model.nq() + 3 * model.n()) as f64 * (BINARY + TEXT);
-        let cost = match step > 0.0 {
-            true => format!("{} rows, about {} of memory", workload::count(count), workload::size(bytes)),
-            false => "no rows".to_string(),
-        };
+    let times = rows::times(&arguments.step, motion.duration(), 1 + model.nq() + 3 * model.n())?;
+    // limits are judged also between the rows
+    let between = (0..=PLACES).map(|k| motion.duration() * k as f64 / PLACES as f64);
+    let of = |t: f64| -> Result<Row> {
+        let Desired { theta, dtheta, ddtheta } = motion.at(t);
+        let tau = model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment())?.as_slice().to_vec();
+        Ok(Row { t, theta, dtheta, ddtheta, tau })
+    };
+    let progress = Progress::new("torques", times.len(), "rows");
+    let told = times.iter().enumerate().map(|(k, &t)| of(t).inspect(|_| progress.at(k + 1)));
+    let rows = told.collect::<Result<Vec<Row>>>()?;
+    drop(progress);
+    let judged = rows.iter().cloned().map(Ok).chain(between.map(of)).collect::<Result<Vec<Row>>>()?;
+    if let Some((row, name)) = judged.iter().find_map(|row| Some((row, row.not_finite()?))) {
         return Err(Failure::wrong(format!(
-            "--step is {}, which gives {cost}; expected a positive number of seconds that gives at most 10⁷ rows",
-            arguments.step.trim()
+            "{name} at t = {} s is not a finite number: the motion is too large or too fast",
+            row.t
         )));
     }
-    let rows = motion.sampled((motion.duration() / step).ceil().max(1.0) as usize);
-    let torque = |row: &Desired| {
-        model
-            .inverse_dynamics(&row.theta, &row.dtheta, &row.ddtheta, &model.environment())
-            .map(|tau| tau.as_slice().to_vec())
-    };
-    let progress = Progress::new("torques", rows.len(), "rows");
-    let told = rows.iter().enumerate().map(|(k, (_, row))| torque(row).inspect(|_| progress.at(k + 1)));
-    let tau = told.collect::<std::result::Result<Vec<_>, _>>()?;
-    drop(progress);
-    let told = beyond(&model, &rows, &tau, &limits);
+    let told = beyond(&model, &judged, &limits);
     told.iter().for_each(|line| failure::note(line));
-    let text = columns(&model, &rows, &tau).text();
+    let text = columns(&model, &rows).text();
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
         save(file, &text)?;
     }
     match arguments.out.as_deref() {
         Some("-") => Ok(text),
-        _ if arguments.robot.json => Ok(json::print(&object(&model, &rows, &tau, told))),
-        file => Ok(page(&model, &rows, &tau, &limits, file)),
+        _ if arguments.robot.json => Ok(json::print(&object(&model, &rows, told))),
+        file => Ok(page(&model, &rows, &judged, &limits, file)),
     }
 }
 
@@ -150,9 +145,8 @@ impl TrajectoryArguments {
     fn limits(&self, model: &Model) -> Result<Limits> {
         let robots = Limits::of(model);
         let (rates, none) = (angles::of_velocities(model), vec![false; model.n()]);
-        let list = |flag: &str, text: &Option<String>, default: Vec<f64>, are_angles: &[bool]| match text.as_deref() {
-            None => Ok(default),
-            Some(text) => one_or_each(flag, text, are_angles),
+        let list = |flag: &str, text: &Option<String>, own: Vec<f64>, are_angles: &[bool]| {
+            limits::of_flag(model, flag, text.as_deref(), own, are_angles)
         };
         Ok(Limits {
             velocity: list("--max-velocity", &self.max_velocity, robots.velocity, &rates)?,
@@ -165,6 +159,7 @@ impl TrajectoryArguments {
         let path: Box<dyn Path + 'm> = match &self.via {
             Some(file) => {
                 let samples = table_file::read(file, model)?;
+                angles::of_file(file);
                 let rows = |table: &[f64], width: usize| table.chunks(width).map(<[f64]>::to_vec).collect::<Vec<_>>();
                 let points = &rows(samples.need("theta", model)?, model.nq());
                 let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
@@ -179,6 +174,14 @@ impl TrajectoryArguments {
                     }
                     let span = times[times.len() - 1] - times[0];
                     let duration = self.time.as_deref().map_or(Ok(span), |text| number("--time", text))?;
+                    if times[0] != 0.0 {
+                        failure::note(&format!("{file} begins at t = {} s, the motion at 0", times[0]));
+                    }
+                    if (duration - span).abs() > 1e-12 * span {
+                        failure::note(&format!(
+                            "--time makes the {span} s of {file} {duration} s: its times are scaled"
+                        ));
+                    }
                     if dtheta.is_none() && ddtheta.is_none() {
                         let spline = Spline::new(model, times, points, Ends::AtRest).map_err(place)?;
                         return Ok(Box::new(Timed::new(spline, Profile::linear(duration)?)));
@@ -220,7 +223,7 @@ impl TrajectoryArguments {
 
     fn path<'m>(&self, model: &'m Model) -> Result<Box<dyn Path + 'm>> {
         let from = positions("--from", self.from.as_deref(), model)?;
-        let to = self.to.as_deref().map(|text| positions("--to", Some(text), model)).transpose()?;
+        let to = self.to.as_deref().map(|text| positions_from(from.clone(), "--to", text, model)).transpose()?;
         let shape = match (self.path, &to) {
             (Way::Joints, Some(to)) => return Ok(Box::new(Line::new(model, &from, to)?)),
             (Way::Joints, None) => return Err(Failure::wrong("the final position is missing, expected --to or --via")),
@@ -241,20 +244,43 @@ impl TrajectoryArguments {
     }
 }
 
-fn columns(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>]) -> Columns {
+/// A moment of the motion.
+#[derive(Clone)]
+struct Row {
+    t: f64,
+    theta: Vec<f64>,
+    dtheta: Vec<f64>,
+    ddtheta: Vec<f64>,
+    tau: Vec<f64>,
+}
+
+impl Row {
+    /// What is not a finite number.
+    fn not_finite(&self) -> Option<&'static str> {
+        let parts = [
+            ("a position", &self.theta),
+            ("a velocity", &self.dtheta),
+            ("an acceleration", &self.ddtheta),
+            ("a torque", &self.tau),
+        ];
+        parts.into_iter().find_map(|(name, list)| list.iter().any(|x| !x.is_finite()).then_some(name))
+    }
+}
+
+fn columns(model: &Model, rows: &[Row]) -> Columns {
     let mut columns = Columns::default();
-    let group = |pick: fn(&Desired) -> &Vec<f64>| rows.iter().map(|(_, row)| pick(row).clone()).collect::<Vec<_>>();
-    columns.add("t", rows.iter().map(|(t, _)| *t).collect());
+    let group = |pick: fn(&Row) -> &Vec<f64>| rows.iter().map(|row| pick(row).clone()).collect::<Vec<_>>();
+    columns.add("t", rows.iter().map(|row| row.t).collect());
     columns.add_group(model, "theta", &group(|row| &row.theta));
     columns.add_group(model, "dtheta", &group(|row| &row.dtheta));
     columns.add_group(model, "ddtheta", &group(|row| &row.ddtheta));
-    columns.add_group(model, "tau", tau);
+    columns.add_group(model, "tau", &group(|row| &row.tau));
     columns
 }
 
 /// A message for each exceeded limit: the robot's position limits, and the given limits of velocity, acceleration and
 /// torque.
-fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limits) -> Vec<String> {
+fn beyond(model: &Model, rows: &[Row], limits: &Limits) -> Vec<String> {
     let mut told = Vec::new();
     let mut say = |what: &str, name: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
         let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
@@ -262,20 +288,20 @@ fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Lim
         // a motion within a limit may exceed it by rounding
         let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
         if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
-            let (x, limit, t) = (scalar(x), scalar(limit), scalar(rows[worst].0));
+            let (x, limit, t) = (scalar(x), scalar(limit), scalar(rows[worst].t));
             told.push(format!("{what} limit: `{name}` reaches {x}, beyond its limit {limit}, at t = {t} s"));
         }
     };
     let names: Vec<&str> = model.velocity_names().collect();
     for (joint, place) in model.joints().zip(model.places()) {
         if let Some(limits) = joint.limits.position {
-            say("joint", &joint.name, &|row| place.bounded_value(&rows[row].1.theta), limits);
+            say("joint", &joint.name, &|row| place.bounded_value(&rows[row].theta), limits);
         }
         for v in place.velocities() {
             for (what, asked, limit) in [
-                ("velocity", &(|row: usize| rows[row].1.dtheta[v]) as &dyn Fn(usize) -> f64, limits.velocity[v]),
-                ("acceleration", &|row| rows[row].1.ddtheta[v], limits.acceleration[v]),
-                ("effort", &|row| tau[row][v], limits.torque[v]),
+                ("velocity", &(|row: usize| rows[row].dtheta[v]) as &dyn Fn(usize) -> f64, limits.velocity[v]),
+                ("acceleration", &|row| rows[row].ddtheta[v], limits.acceleration[v]),
+                ("effort", &|row| rows[row].tau[v], limits.torque[v]),
             ] {
                 say(what, names[v], asked, [-limit, limit]);
             }
@@ -284,50 +310,50 @@ fn beyond(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Lim
     told
 }
 
-fn object(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], beyond: Vec<String>) -> Value {
-    let group =
-        |pick: fn(&Desired) -> &Vec<f64>| rows.iter().map(|(_, row)| json::vector(pick(row))).collect::<Value>();
+fn object(model: &Model, rows: &[Row], beyond: Vec<String>) -> Value {
+    let group = |pick: fn(&Row) -> &Vec<f64>| rows.iter().map(|row| json::vector(pick(row))).collect::<Value>();
     json::of_robot(
         model,
         json!({
-            "t": rows.iter().map(|(t, _)| Value::from(*t)).collect::<Value>(),
+            "t": rows.iter().map(|row| Value::from(row.t)).collect::<Value>(),
             "theta": group(|row| &row.theta),
             "dtheta": group(|row| &row.dtheta),
             "ddtheta": group(|row| &row.ddtheta),
-            "tau": tau.iter().map(|tau| json::vector(tau)).collect::<Value>(),
+            "tau": group(|row| &row.tau),
             "beyond": beyond,
         }),
     )
 }
 
-fn page(model: &Model, rows: &[(f64, Desired)], tau: &[Vec<f64>], limits: &Limits, file: Option<&str>) -> String {
+/// Largest values are those of the `judged` moments.
+fn page(model: &Model, rows: &[Row], judged: &[Row], limits: &Limits, file: Option<&str>) -> String {
     let mut page = Page::default();
-    let duration = rows.last().map_or(0.0, |(t, _)| *t);
+    let duration = rows.last().map_or(0.0, |row| row.t);
     page.line(format!("{}: a motion of {} s", model.description().name, scalar(duration)));
     let shown = model.nq().min(8);
     let mut cells =
         vec![std::iter::once("t [s]".to_string()).chain((1..=shown).map(|j| format!("θ_{j}"))).collect::<Vec<_>>()];
     let picked: Vec<usize> = (0..=SHOWN).map(|k| k * (rows.len() - 1) / SHOWN).collect();
     let are_angles = angles::of_positions(model);
-    let of = |row: &Desired| angles::shown(&row.theta[..shown], &are_angles[..shown]);
-    let theta = Decimals::of(&rows.iter().flat_map(|(_, row)| of(row)).collect::<Vec<_>>());
-    let time = Decimals::of(rows.iter().map(|(t, _)| t));
+    let of = |row: &Row| angles::shown(&row.theta[..shown], &are_angles[..shown]);
+    let theta = Decimals::of(&rows.iter().flat_map(of).collect::<Vec<_>>());
+    let time = Decimals::of(rows.iter().map(|row| &row.t));
     for &k in &picked {
-        let (t, row) = &rows[k];
-        cells.push(std::iter::once(time.show(*t)).chain(of(row).into_iter().map(|q| theta.show(q))).collect());
+        let row = &rows[k];
+        cells.push(std::iter::once(time.show(row.t)).chain(of(row).into_iter().map(|q| theta.show(q))).collect());
     }
     cells.dedup();
     page.blank().lines(&table(&cells, "r")).blank();
     // the largest value of each joint, and of its limit
-    let largest = |pick: &dyn Fn(usize) -> Vec<f64>| {
-        let all = (0..rows.len()).map(pick);
-        all.fold(vec![0.0_f64; model.n()], |m, row| m.iter().zip(&row).map(|(m, x)| m.max(x.abs())).collect())
+    let largest = |pick: fn(&Row) -> &Vec<f64>| {
+        let all = judged.iter().map(pick);
+        all.fold(vec![0.0_f64; model.n()], |m, row| m.iter().zip(row).map(|(m, x)| m.max(x.abs())).collect())
     };
     let units = Units::of(model);
     for (what, unit, found, limit) in [
-        ("velocity", units.input(1), largest(&|k| rows[k].1.dtheta.clone()), &limits.velocity),
-        ("acceleration", units.input(2), largest(&|k| rows[k].1.ddtheta.clone()), &limits.acceleration),
-        ("torque", units.input(3), largest(&|k| tau[k].clone()), &limits.torque),
+        ("velocity", units.input(1), largest(|row| &row.dtheta), &limits.velocity),
+        ("acceleration", units.input(2), largest(|row| &row.ddtheta), &limits.acceleration),
+        ("torque", units.input(3), largest(|row| &row.tau), &limits.torque),
     ] {
         let share = found.iter().zip(limit).map(|(x, limit)| x / limit).fold(0.0, f64::max);
         let most = found.iter().fold(0.0_f64, |m, &x| m.max(x));

@@ -5,7 +5,7 @@ use crate::failure::{self, Failure, Result};
 use crate::input;
 use crate::xacro_arguments::{XacroArguments, assignment};
 use clap::Args;
-use mozzi_urdf::{Settings, expanded};
+use mozzi_urdf::{Settings, expanded_with_warnings};
 
 /// A larger file is refused.
 const MOST: usize = 64 << 20;
@@ -31,7 +31,9 @@ pub fn run(command: &XacroCommand) -> Result<String> {
         _ => input::bytes(file, MOST)?,
     };
     let settings = Settings { xacro: command.xacro.with(&command.given).arguments(), ..Settings::default() };
-    let Some(text) = expanded(input::name(file), text, settings)? else {
+    let (text, warnings) = expanded_with_warnings(input::name(file), text, settings)?;
+    warnings.iter().for_each(|warning| failure::write(&format!("{warning}\n")));
+    let Some(text) = text else {
         return Err(Failure::wrong(format!(
             "{} is not a xacro file: its name does not end in .xacro, or its root declares no namespace of xacro with \
              anything to expand",

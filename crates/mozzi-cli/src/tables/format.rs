@@ -60,10 +60,13 @@ impl Format {
         Ok(Self::known(file, &TABLE)?.unwrap_or(Csv))
     }
 
-    /// Checks the name of a CSV output: the ending of another format would mislead its readers.
+    /// Checks the name of a CSV output: another ending would mislead its readers.
     pub fn check_csv(file: &str) -> Result<()> {
+        let is_text =
+            Path::new(file).extension().is_none_or(|ending| ["txt", "dat"].iter().any(|text| ending == *text));
         match Self::known(file, &MOTION) {
-            Ok(None | Some(Csv)) => Ok(()),
+            Ok(Some(Csv)) => Ok(()),
+            Ok(None) if is_text => Ok(()),
             _ => Err(Failure::wrong(format!("{file}: only CSV is written here, expected a name that ends in .csv"))),
         }
     }

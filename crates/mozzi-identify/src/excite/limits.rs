@@ -39,6 +39,10 @@ pub struct MotionLimits {
 
 /// The acceleration that reaches the velocity limit in this time is the default limit, s.
 const TO_SPEED: f64 = 0.3;
+/// The length to which what leaves a box, or comes too near, is relative, m.
+const SIZE: f64 = 0.1;
+/// The share of a limit that tightened limits leave.
+const ROOM: f64 = 0.1;
 
 impl MotionLimits {
     /// The robot's own: positions less 2 % at both ends, half a turn about 0 if there is no limit; velocities, 1 rad/s
@@ -75,6 +79,69 @@ impl MotionLimits {
         self.position.iter().map(|[low, high]| 0.5 * (low + high)).collect()
     }
 
+    /// Limits within these, which leave room for a motion about a state that keeps them.
+    pub(super) fn tightened(&self) -> Self {
+        let [narrow, wide] = [1.0 - ROOM, 1.0 + ROOM];
+        let within = |[low, high]: [f64; 2]| {
+            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+            [middle - narrow * half, middle + narrow * half]
+        };
+        let mut tight = self.clone();
+        tight.position.iter_mut().filter(|[low, high]| low < high).for_each(|range| *range = within(*range));
+        tight.torque.iter_mut().for_each(|torque| *torque *= narrow);
+        for Box3 { corners: [low, high], .. } in &mut tight.boxes {
+            for (low, high) in low.iter_mut().zip(high) {
+                [*low, *high] = within([*low, *high]);
+            }
+        }
+        for (a, b) in &mut tight.apart {
+            (a.radius, b.radius) = (wide * a.radius, wide * b.radius);
+        }
+        tight
+    }
+
+    /// In words, the limit that a state and its torques break most; `None` if they keep all.
+    ///
+    /// # Errors
+    /// [`mozzi::Error`] for a frame of another model.
+    pub(super) fn broken(
+        &self,
+        model: &Model,
+        [theta, dtheta, ddtheta]: &[Vec<f64>; 3],
+        tau: &[f64],
+    ) -> Result<Option<String>, mozzi::Error> {
+        let mut all: Vec<(f64, String)> = Vec::new();
+        for (j, joint) in model.joint_names().enumerate() {
+            let [low, high] = self.position[j];
+            let off = (low - theta[j]).max(theta[j] - high);
+            all.push((off / (high - low), format!("`{joint}` at {:.4}, beyond {low:.4} … {high:.4}", theta[j])));
+            for (what, x, limit) in [
+                ("velocity", dtheta[j], self.velocity[j]),
+                ("acceleration", ddtheta[j], self.acceleration[j]),
+                ("torque", tau[j], self.torque[j]),
+            ] {
+                let words = format!("the {what} of `{joint}` of {x:.4}, beyond its limit {limit:.4}");
+                all.push((x.abs() / limit - 1.0, words));
+            }
+        }
+        for Box3 { frame, corners: [low, high] } in &self.boxes {
+            let p = model.forward_kinematics(theta, *frame)?.p.0;
+            let off = (0..3).map(|axis| (low[axis] - p[axis]).max(p[axis] - high[axis])).fold(f64::MIN, f64::max);
+            let ([x, y, z], name) = (p, model.frame_name(*frame));
+            let words = format!("`{name}` at ({x:.3}, {y:.3}, {z:.3}) m, outside its box by {off:.3} m");
+            all.push((off / SIZE, words));
+        }
+        for (a, b) in &self.apart {
+            let [p, q] = [a, b].map(|sphere| model.forward_kinematics(theta, sphere.frame).map(|T| T.p));
+            let (distance, least) = ((p? - q?).norm(), a.radius + b.radius);
+            let names = [a, b].map(|sphere| model.frame_name(sphere.frame));
+            let words = format!("`{}` and `{}` {distance:.3} m apart, of {least:.3} m", names[0], names[1]);
+            all.push(((least - distance) / SIZE, words));
+        }
+        let worst = all.into_iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
+        Ok(worst.filter(|(over, _)| *over > 0.0).map(|(_, words)| words))
+    }
+
     /// By how much the motion exceeds each limit, relative to it, squared and summed; adds the gradient. θ, θ̇ and θ̈
     /// have one gradient each.
     pub fn excess(&self, state: &[Vec<f64>; 3], gradient: &mut [Vec<f64>; 3]) -> f64 {
@@ -103,7 +170,6 @@ impl MotionLimits {
     /// # Errors
     /// [`mozzi::Error`] for a frame of another model.
     pub fn collisions(&self, model: &Model, theta: &[f64], gradient: &mut [f64]) -> Result<f64, mozzi::Error> {
-        const SIZE: f64 = 0.1;
         let mut sum = 0.0;
         let push = |frame: FrameId, slope: Vec3, gradient: &mut [f64]| -> Result<(), mozzi::Error> {
             let R = model.forward_kinematics(theta, frame)?.R;

@@ -99,7 +99,8 @@ fn state(basis: &Basis, coefficients: &[f64], t: f64) -> [Vec<f64>; 3] {
 /// Searches a motion. `stop` ends the search with the best so far.
 ///
 /// # Errors
-/// [`Error::BadOption`] for a duration that is not positive, limits of a wrong length, or a start outside its limits.
+/// [`Error::BadOption`] for a duration that is not positive, limits of a wrong length, a start at which a limit is broken,
+/// or limits that leave no room for a motion.
 pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -> Result<Excitation, Error> {
     without_constraints(model)?;
     check(model, options)?;
@@ -109,7 +110,8 @@ pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -
     let base = BaseParameters::of_columns(&stacked(&columns, 2 * P / n + 10)?, names);
     let basis = Basis { duration: options.duration, harmonics: options.harmonics };
     let mut objective = Objective::new(&columns, &base, &basis, options)?;
-    let middle = options.start.clone().unwrap_or_else(|| options.limits.middle());
+    let middle = objective.start()?;
+    let moves: Vec<bool> = options.limits.position.iter().map(|[low, high]| low < high).collect();
     let mut best: Option<(f64, Vec<f64>)> = None;
     let mut condition_of_random = f64::INFINITY;
     for seed in 0..options.starts.max(1) {
@@ -117,12 +119,13 @@ pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -
         let mut c = vec![0.0; n * basis.count()];
         for j in 0..n {
             c[j * basis.count()] = middle[j];
-            let size = options.limits.velocity[j] * options.duration / (12.0 * options.harmonics as f64);
+            let most = if moves[j] { options.limits.velocity[j] } else { 0.0 };
+            let size = most * options.duration / (12.0 * options.harmonics as f64);
             for k in 1..basis.count() {
                 c[j * basis.count() + k] = size * random.next() / (1.0 + (k / 2) as f64).sqrt();
             }
         }
-        objective.shrink(&mut c);
+        objective.shrink(&mut c, &middle);
         if seed == 0 {
             condition_of_random = objective.condition(&c);
         }
@@ -130,23 +133,28 @@ pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -
         for weight in [10.0, 100.0, 1000.0] {
             let f = |c: &[f64]| {
                 let (value, mut gradient) = objective.value(c, weight);
-                if hold {
-                    (0..n).for_each(|j| gradient[j * basis.count()] = 0.0);
+                for (of_joint, moves) in gradient.chunks_mut(basis.count()).zip(&moves) {
+                    let held = if *moves { usize::from(hold) } else { of_joint.len() };
+                    of_joint[..held].fill(0.0);
                 }
                 (value, gradient)
             };
             lbfgs::minimize(&mut c, options.iterations, 1e-5, 0.1, f, stop);
         }
-        objective.shrink(&mut c);
+        let is_inside = objective.shrink(&mut c, &middle);
         let value = objective.value(&c, 0.0).0;
-        if best.as_ref().is_none_or(|(least, _)| value < *least) {
+        if is_inside && best.as_ref().is_none_or(|(least, _)| value < *least) {
             best = Some((value, c));
         }
         if stop() {
             break;
         }
     }
-    let (_, coefficients) = best.unwrap_or((0.0, vec![0.0; n * basis.count()]));
+    let (_, coefficients) = best.ok_or_else(|| Error::BadOption {
+        option: "the start",
+        found: format!("{middle:.4?}, about which every motion breaks a limit"),
+        expected: "a start with room for a motion".into(),
+    })?;
     let deviations = objective.deviations(&coefficients);
     let values = base.values(&columns.prior());
     let parameters = base.names().into_iter().zip(values.iter().copied()).zip(deviations);
@@ -188,15 +196,22 @@ fn check(model: &Model, options: &ExciteOptions) -> Result<(), Error> {
     if !options.noise.iter().all(|x| *x > 0.0 && x.is_finite()) {
         return wrong("the noise", format!("{:?}", options.noise), "positive numbers");
     }
-    let positive = |list: &[f64]| list.iter().all(|x| *x > 0.0);
-    if !positive(&limits.velocity) || !positive(&limits.acceleration) || !positive(&limits.torque) {
-        return wrong("a limit of velocity, acceleration or torque", "not positive".into(), "positive numbers");
+    if let Some((joint, x)) = model.joint_names().zip(&limits.velocity).find(|(_, x)| x.is_infinite()) {
+        return wrong("a limit of velocity", format!("{x} for `{joint}`"), "a finite number");
     }
-    if let Some(start) = &options.start {
-        let inside = |(x, [low, high]): (&f64, &[f64; 2])| x >= low && x <= high;
-        if start.len() != n || !start.iter().zip(&limits.position).all(inside) {
-            return wrong("the start", format!("{start:?}"), "positions within the limits, one for each joint");
+    for (option, list) in [
+        ("a limit of velocity", &limits.velocity),
+        ("a limit of acceleration", &limits.acceleration),
+        ("a limit of torque", &limits.torque),
+    ] {
+        for (joint, x) in model.joint_names().zip(list).filter(|(_, x)| !(**x > 0.0)) {
+            return wrong(option, format!("{x} for `{joint}`"), "a positive number");
         }
+    }
+    if let Some(start) = &options.start
+        && start.len() != n
+    {
+        return wrong("the start", format!("{start:?}"), "one number for each joint");
     }
     Ok(())
 }

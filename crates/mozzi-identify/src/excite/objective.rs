@@ -1,10 +1,11 @@
 //! Information content of a motion, and its gradient with respect to the coefficients.
 
-use super::{Basis, ExciteOptions, state};
+use super::{Basis, ExciteOptions, MotionLimits, lbfgs, state};
 use crate::Error;
 use crate::columns::{Columns, Equations, Kind};
 use crate::signals::Samples;
 use mozzi::quantities::{InverseDynamics, InverseDynamicsVjp, Query};
+use mozzi::random::Random;
 use mozzi::{BaseParameters, fast};
 use nalgebra::{DMatrix, DVector};
 
@@ -22,6 +23,12 @@ pub enum Goal {
 const POINTS: usize = 12;
 /// Points at which limits are checked at the end, per point.
 const FINE: usize = 4;
+/// A motion is made smaller by this factor, and given up below the second.
+const SMALLER: f64 = 0.97;
+const LEAST: f64 = 1e-3;
+/// Random positions from which one that keeps the limits is sought, and steps from each.
+const ATTEMPTS: usize = 20;
+const ATTEMPT_STEPS: usize = 200;
 
 pub(super) struct Objective<'a, 'm> {
     columns: &'a Columns<'m>,
@@ -110,7 +117,7 @@ impl<'a, 'm> Objective<'a, 'm> {
             self.add_slopes(&at, &(&Y * &G * (2.0 / count)), &mut slopes);
             if weight > 0.0 {
                 let mut over: [Vec<f64>; 3] = core::array::from_fn(|_| vec![0.0; n]);
-                value += weight / count * self.excess(&at, &mut over);
+                value += weight / count * self.excess(&self.options.limits, &at, &mut over);
                 for (sum, x) in slopes.iter_mut().flatten().zip(over.iter().flatten()) {
                     *sum += weight / count * x;
                 }
@@ -158,16 +165,23 @@ impl<'a, 'm> Objective<'a, 'm> {
         }
     }
 
-    /// The squared excess of all limits at a state, and its gradient.
-    fn excess(&mut self, at: &[Vec<f64>; 3], gradient: &mut [Vec<f64>; 3]) -> f64 {
-        let (model, limits) = (self.columns.model, &self.options.limits);
+    /// τ of a state.
+    fn torques(&mut self, at: &[Vec<f64>; 3]) -> Vec<f64> {
+        let model = self.columns.model;
+        let inputs: [&[f64]; 3] = [&at[0], &at[1], &at[2]];
+        let mut tau = vec![0.0; model.n()];
+        let query = Query::from(InverseDynamics);
+        fast::evaluate(&query, model, &inputs, &model.environment(), &mut self.workspace, &mut [&mut tau]);
+        tau
+    }
+
+    /// The squared excess of limits at a state, and its gradient.
+    fn excess(&mut self, limits: &MotionLimits, at: &[Vec<f64>; 3], gradient: &mut [Vec<f64>; 3]) -> f64 {
+        let model = self.columns.model;
         let n = model.n();
         let mut sum = limits.excess(at, gradient);
         if limits.torque.iter().any(|limit| limit.is_finite()) {
-            let inputs: [&[f64]; 3] = [&at[0], &at[1], &at[2]];
-            let mut tau = vec![0.0; n];
-            let query = Query::from(InverseDynamics);
-            fast::evaluate(&query, model, &inputs, &model.environment(), &mut self.workspace, &mut [&mut tau]);
+            let tau = self.torques(at);
             let mut x = vec![0.0; n];
             for j in 0..n {
                 let over = tau[j].abs() / limits.torque[j] - 1.0;
@@ -191,22 +205,73 @@ impl<'a, 'm> Objective<'a, 'm> {
         sum + limits.collisions(model, &at[0], &mut gradient[0]).unwrap_or(0.0)
     }
 
-    /// Makes the motion smaller about its start until every limit holds; the start itself stays.
-    pub fn shrink(&mut self, c: &mut [f64]) {
+    /// Where a motion may begin: the given start, which must keep the limits at rest, or a state that does.
+    pub fn start(&mut self) -> Result<Vec<f64>, Error> {
+        let (limits, n) = (&self.options.limits, self.columns.model.n());
+        if let Some(start) = &self.options.start {
+            return match self.broken(start)? {
+                None => Ok(start.clone()),
+                Some(found) => Err(Error::BadOption {
+                    option: "the start",
+                    found,
+                    expected: "a start that keeps all limits".into(),
+                }),
+            };
+        }
+        let tight = limits.tightened();
+        let mut random = Random(17);
+        for attempt in 0..ATTEMPTS {
+            let mut theta = limits.middle();
+            if attempt > 0 {
+                let share = |[low, high]: &[f64; 2]| 0.5 * (high - low);
+                theta.iter_mut().zip(&limits.position).for_each(|(x, range)| *x += share(range) * random.next());
+            }
+            let f = |theta: &[f64]| {
+                let mut gradient = still(theta);
+                let at = still(theta);
+                gradient[0].fill(0.0);
+                (self.excess(&tight, &at, &mut gradient), core::mem::take(&mut gradient[0]))
+            };
+            lbfgs::minimize(&mut theta, ATTEMPT_STEPS, 1e-6, 0.3, f, &|| false);
+            if self.broken(&theta)?.is_none() {
+                return Ok(theta);
+            }
+        }
+        let found = self.broken(&limits.middle())?.unwrap_or_else(|| format!("broken by each of {n} joints"));
+        let expected = "limits that the robot can keep at rest";
+        Err(Error::BadOption { option: "what limits the motion", found, expected: expected.into() })
+    }
+
+    /// The limit that the robot breaks most at rest.
+    fn broken(&mut self, theta: &[f64]) -> Result<Option<String>, Error> {
+        let at = still(theta);
+        let tau = self.torques(&at);
+        Ok(self.options.limits.broken(self.columns.model, &at, &tau)?)
+    }
+
+    /// Makes the motion smaller, about a state that keeps the limits at rest, until every limit holds all the time.
+    /// False if it would become nothing.
+    pub fn shrink(&mut self, c: &mut [f64], about: &[f64]) -> bool {
         let count = self.basis.count();
         let fine = FINE * self.times.len();
-        for _ in 0..60 {
+        let mut size = 1.0;
+        while size > LEAST {
             let inside = (0..=fine).all(|k| {
                 let t = k as f64 / fine as f64 * self.basis.duration;
                 let at = state(self.basis, c, t);
                 let mut unused: [Vec<f64>; 3] = core::array::from_fn(|_| vec![0.0; at[0].len()]);
-                self.excess(&at, &mut unused) == 0.0
+                self.excess(&self.options.limits, &at, &mut unused) == 0.0
             });
             if inside {
-                return;
+                return true;
             }
-            c.iter_mut().enumerate().filter(|(k, _)| k % count != 0).for_each(|(_, c)| *c *= 0.97);
+            size *= SMALLER;
+            for (k, c) in c.iter_mut().enumerate() {
+                let middle = if k % count == 0 { about[k / count] } else { 0.0 };
+                *c = middle + SMALLER * (*c - middle);
+            }
         }
+        false
     }
 
     /// The condition number of the weighted regressor with unit columns.
@@ -231,6 +296,11 @@ impl<'a, 'm> Objective<'a, 'm> {
             None => vec![f64::INFINITY; S.nrows()],
         }
     }
+}
+
+/// A state at rest.
+fn still(theta: &[f64]) -> [Vec<f64>; 3] {
+    [theta.to_vec(), vec![0.0; theta.len()], vec![0.0; theta.len()]]
 }
 
 /// The value of a goal, and its derivative by the information.
@@ -322,6 +392,68 @@ mod tests {
         }
         let rest = found.at(0.0);
         assert!(rest[1].iter().chain(&rest[2]).all(|x| x.abs() < 1e-9));
+    }
+
+    /// The box, sphere and torque limits of a motion about a start that keeps them, and at the default start, which does
+    /// not.
+    #[test]
+    fn boxes_distances_and_torques_hold_all_the_time() {
+        let model = robot("ur5");
+        let [tip, base] = ["tool0", "base_link"].map(|name| model.frame(name).expect("there"));
+        let short = ExciteOptions { iterations: 10, starts: 1, harmonics: 2, ..ExciteOptions::new(&model, 6.0) };
+        let excite = |start: Option<Vec<f64>>, change: &dyn Fn(&mut MotionLimits)| {
+            let mut options = ExciteOptions { start, ..short.clone() };
+            change(&mut options.limits);
+            super::super::excite(&model, &options, &|| false).map(|found| (options.limits, found))
+        };
+        let corners = [[0.2, -0.2, 0.1], [0.7, 0.4, 0.5]];
+        let within = |limits: &mut MotionLimits| limits.boxes.push(Box3 { frame: tip, corners });
+        let apart = |limits: &mut MotionLimits| {
+            let [a, b] = [(tip, 0.3), (base, 0.4)].map(|(frame, radius)| Sphere { frame, radius });
+            limits.apart.push((a, b));
+        };
+        let weak = |limits: &mut MotionLimits| limits.torque = vec![150.0, 60.0, 40.0, 28.0, 28.0, 28.0];
+        let inside = vec![0.0, -1.2, 1.5, 0.3, 1.1, 0.0];
+        for (start, change) in [
+            (Some(inside.clone()), &within as &dyn Fn(&mut MotionLimits)),
+            (None, &within),
+            (None, &apart),
+            (None, &weak),
+        ] {
+            let (limits, found) = excite(start.clone(), change).expect("a motion");
+            for k in 0..=600 {
+                let at = found.at(k as f64 / 100.0);
+                let tau = model.inverse_dynamics(&at[0], &at[1], &at[2], &model.environment()).expect("lengths");
+                let mut loose = limits.clone();
+                loose.torque.iter_mut().for_each(|torque| *torque *= 1.01);
+                loose.velocity.iter_mut().for_each(|velocity| *velocity *= 1.01);
+                loose.acceleration.iter_mut().for_each(|acceleration| *acceleration *= 1.01);
+                loose.position.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - 1e-3, *high + 1e-3));
+                for Box3 { corners: [low, high], .. } in &mut loose.boxes {
+                    (low.iter_mut().for_each(|x| *x -= 1e-3), high.iter_mut().for_each(|x| *x += 1e-3));
+                }
+                loose.apart.iter_mut().for_each(|(a, _)| a.radius -= 1e-3);
+                assert_eq!(loose.broken(&model, &at, tau.as_slice()).expect("frames"), None, "t = {k}/100 s");
+            }
+            let moves = found.coefficients.iter().map(|c| c.abs()).fold(0.0, f64::max);
+            assert!(moves > 1e-2 && start.is_none_or(|start| found.at(0.0)[0] == start), "{moves}");
+        }
+        // what no motion can keep is named
+        let error = |start: Option<Vec<f64>>, change: &dyn Fn(&mut MotionLimits)| {
+            excite(start, change).expect_err("impossible").to_string()
+        };
+        let far = |limits: &mut MotionLimits| {
+            limits.boxes.push(Box3 { frame: tip, corners: [[2.0; 3], [3.0; 3]] });
+        };
+        let message = error(None, &far);
+        assert!(message.contains("`tool0` at (") && message.contains("outside its box by"), "{message}");
+        let stretched = || Some(vec![0.0, -1.0, 0.0, 0.0, 0.0, 0.0]);
+        let message = error(stretched(), &|limits| limits.torque = vec![150.0, 20.0, 20.0, 28.0, 28.0, 28.0]);
+        assert!(message.contains("the torque of `shoulder_lift_joint` of") && message.contains("20.0000"), "{message}");
+        let message = error(stretched(), &within);
+        assert!(message.contains("the start is `tool0`"), "{message}");
+        let message = error(Some(inside), &|limits| limits.velocity[2] = 0.0);
+        assert!(message.contains("a limit of velocity is 0 for `elbow_joint`"), "{message}");
     }
 
     #[test]

@@ -39,11 +39,15 @@ impl Goal {
         }
     }
 
-    /// Angle and distance of a twist of [`error`](Self::error), each `None` if the goal leaves it free.
-    pub(super) fn residual(&self, error: Twist) -> Residual {
-        let rows = self.rows();
-        let size = |v: Vec3| v.dot(v).sqrt();
-        Residual { angle: rows.contains(&0).then(|| size(error.w)), distance: rows.contains(&3).then(|| size(error.v)) }
+    /// The angle and the distance from T, each `None` if the goal leaves it free.
+    pub(super) fn residual(&self, T: SE3) -> Residual {
+        let angle = |R: SO3| (T.R.inverse() * R).log().norm();
+        let distance = |p: Vec3| (p - T.p).norm();
+        match *self {
+            Goal::Pose(goal) => Residual { angle: Some(angle(goal.R)), distance: Some(distance(goal.p)) },
+            Goal::Position(p) => Residual { angle: None, distance: Some(distance(p)) },
+            Goal::Orientation(R) => Residual { angle: Some(angle(R)), distance: None },
+        }
     }
 
     pub(super) fn is_finite(&self) -> bool {
@@ -59,9 +63,9 @@ impl Goal {
 /// The error of a frame's goal; `None` if the goal leaves it free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
-    /// ‖ω‖ of the [error](Goal::error), rad.
+    /// ‖log(RᵀR_d)‖, rad.
     pub angle: Option<f64>,
-    /// ‖v‖, m.
+    /// ‖p_d − p‖, m.
     pub distance: Option<f64>,
 }
 

@@ -195,6 +195,7 @@ impl<'m> InverseKinematics<'m> {
             theta.copy_from_slice(&room.next);
             if start > 1 {
                 self.bounds.randomize(theta, random);
+                self.keep_idle(theta, &room.next);
             }
             let left = self.approach(goal, theta, self.options.iterations, &mut room.best);
             if self.is_reached(goal, theta) {
@@ -210,6 +211,18 @@ impl<'m> InverseKinematics<'m> {
         self.found(false, goal, theta, starts)
     }
 
+    /// Joints that do not move the frame stay at the guess.
+    fn keep_idle(&mut self, theta: &mut [f64], guess: &[f64]) {
+        self.linearize(theta);
+        let columns = &self.step.columns;
+        for place in self.model.configuration_space().places() {
+            if place.velocities().all(|j| columns[j] == Twist::zero()) {
+                let positions = place.positions();
+                theta[positions.clone()].copy_from_slice(&guess[positions]);
+            }
+        }
+    }
+
     /// True if no lengths of the robot lead so far.
     fn is_out_of_reach(&self, goal: &Goal) -> bool {
         let outside = self.ball.zip(reach::position(*goal)).map(|(ball, p)| ball.outside(p));
@@ -217,7 +230,7 @@ impl<'m> InverseKinematics<'m> {
     }
 
     fn found(&self, is_reached: bool, goal: &Goal, theta: &[f64], starts: usize) -> Found {
-        let residual = goal.residual(self.error(goal, theta));
+        let residual = self.residual(goal, theta);
         Found { is_reached, residual, starts, iterations: self.iterations }
     }
 
@@ -225,8 +238,12 @@ impl<'m> InverseKinematics<'m> {
         goal.error(forward_kinematics(self.model, theta, self.frame))
     }
 
+    fn residual(&self, goal: &Goal, theta: &[f64]) -> Residual {
+        goal.residual(forward_kinematics(self.model, theta, self.frame))
+    }
+
     fn is_reached(&self, goal: &Goal, theta: &[f64]) -> bool {
-        let Residual { angle, distance } = goal.residual(self.error(goal, theta));
+        let Residual { angle, distance } = self.residual(goal, theta);
         angle.is_none_or(|x| x <= self.options.angle) && distance.is_none_or(|x| x <= self.options.distance)
     }
 
@@ -249,7 +266,7 @@ impl<'m> InverseKinematics<'m> {
         self.bounds.clamp(theta);
         best.copy_from_slice(theta);
         let (mut least, mut mark, mut since) = (f64::INFINITY, f64::INFINITY, 0);
-        for _ in 0..=iterations {
+        for done in 0..=iterations {
             let e = self.scaled(self.error(goal, theta));
             let size = e.norm();
             if size < least {
@@ -258,7 +275,7 @@ impl<'m> InverseKinematics<'m> {
             }
             since = if size < 0.5 * mark { 0 } else { since + 1 };
             mark = if since == 0 { size } else { mark };
-            if self.is_reached(goal, theta) || since > PATIENCE || !size.is_finite() {
+            if self.is_reached(goal, theta) || since > PATIENCE || !size.is_finite() || done == iterations {
                 break;
             }
             self.iterations += 1;

@@ -4,7 +4,7 @@ use super::*;
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::model::difference;
 use mozzi::testing::{floating_tree, state, tree, twist};
-use mozzi::{Description, SE3, SpatialInertia, Vec3};
+use mozzi::{Description, SE3, SO3, SpatialInertia, Vec3};
 
 fn robot(name: &str, frame: &str) -> (Model, FrameId) {
     let model = mozzi_urdf::open(name).expect("embedded").build().expect("sound");
@@ -180,6 +180,44 @@ fn a_secondary_goal_chooses_among_the_solutions() {
     let again =
         solver.solve_with(goal, &[0.1, 0.2, 0.1, -1.0, 0.0, 1.0, 0.0], &Secondary::Minimize(&H)).expect("reached");
     assert!(again.theta.iter().zip(&near.theta).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+/// The remaining distance is that of the origins, not the length of a screw; joints that do not move the frame stay.
+#[test]
+fn what_is_left_is_a_distance_and_idle_joints_stay() {
+    let (model, tip) = robot("two_link_planar", "tip");
+    let goal = SE3::new(SO3::from_rpy(2.5, 0.0, 0.0), Vec3([1.0, 0.5, 0.0]));
+    let error = InverseKinematics::new(&model, tip).expect("sound").solve(Goal::Pose(goal), &[0.0, 0.0]);
+    let Err(Error::NotReached { theta, residual, .. }) = error else { panic!("reached: {error:?}") };
+    let T = model.forward_kinematics(&theta, tip).expect("sound");
+    assert!((residual.distance.expect("a pose") - (goal.p - T.p).norm()).abs() < 1e-14);
+    assert!((residual.angle.expect("a pose") - (T.R.inverse() * goal.R).log().norm()).abs() < 1e-14);
+
+    let (model, hand) = robot("panda", "panda_hand");
+    let finger = model.joint_names().position(|name| name == "panda_finger_joint1").expect("there");
+    let mut random = Random(3);
+    let mut several = 0;
+    for _ in 0..20 {
+        let goal = Goal::Pose(model.forward_kinematics(&within(&model, &mut random), hand).expect("sound"));
+        let mut guess = model.start().theta;
+        guess[finger] = 0.01;
+        let found = InverseKinematics::new(&model, hand).expect("sound").solve(goal, &guess).expect("reached");
+        assert_eq!(found.theta[finger], 0.01);
+        several += usize::from(found.starts > 1);
+    }
+    assert!(several > 0);
+}
+
+#[test]
+fn iterations_are_counted() {
+    let (model, tip) = robot("ur5", "tool0");
+    for most in [1, 3] {
+        let options = Options { starts: 1, iterations: most, ..Options::default() };
+        let error = InverseKinematics::with_options(&model, tip, options)
+            .expect("sound")
+            .solve(Goal::Position(Vec3([0.4, 0.2, 0.5])), &[0.0; 6]);
+        assert!(matches!(error, Err(Error::NotReached { iterations, .. }) if iterations == most), "{error:?}");
+    }
 }
 
 #[test]

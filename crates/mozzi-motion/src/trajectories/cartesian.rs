@@ -72,7 +72,7 @@ impl Cartesian {
             let mut points = vec![from.to_vec()];
             for &s in &s[1..] {
                 let next = solver.solve(Goal::Pose(pose(s)), &points[points.len() - 1]);
-                points.push(next.map_err(|error| Error::OffPath { s, source: Box::new(error) })?.theta);
+                points.push(next.map_err(|error| off_path(&solver, s, pose(s), error))?.theta);
             }
             let spline = Spline::new(model, &s, &points, Ends::Natural)?;
             let off = |k: usize| {
@@ -90,6 +90,17 @@ impl Cartesian {
             }
         }
     }
+}
+
+/// Why a path is left: beyond the robot's reach, or where its frame cannot move as the path does.
+fn off_path(solver: &InverseKinematics, s: f64, goal: SE3, error: Error) -> Error {
+    let why = match &error {
+        Error::NotReached { theta, .. } => solver.why_not(Goal::Pose(goal), theta),
+        _ => None,
+    };
+    let why =
+        why.unwrap_or_else(|| "a singular position, or a joint at its limit, is in the way; begin elsewhere".into());
+    Error::OffPath { s, why, source: Box::new(error) }
 }
 
 impl Path for Cartesian {

@@ -258,7 +258,7 @@ mod tests {
         assert_eq!((figure.panels.len(), at(0) + at(1)), (2, at(2)));
         let bare = Motion { dtheta: None, kinetic_energy: None, potential_energy: None, ..motion };
         let message = phase(&model, &bare).expect_err("no velocities").to_string();
-        assert_eq!(message, "the motion's dtheta has 0 numbers, expected 22: 11 rows of 2");
+        assert_eq!(message, "the motion has no dtheta, expected 22: 11 rows of 2");
         assert!(energy(&model, &bare).is_err());
     }
 }

@@ -68,9 +68,21 @@ pub fn expanded(
     text: impl AsRef<[u8]>,
     settings: impl Into<Settings>,
 ) -> Result<Option<String>, LoadError> {
-    let Ok(text) = to_text(text.as_ref()) else { return Ok(None) };
-    let (source, _) = prepare(Source::new(file_name, text), &settings.into().xacro)?;
-    Ok(source.expansion.map(|expansion| expansion.text.clone()))
+    Ok(expanded_with_warnings(file_name, text, settings)?.0)
+}
+
+/// As [`expanded`], and the warnings of the expansion.
+///
+/// # Errors
+/// As [`expanded`].
+pub fn expanded_with_warnings(
+    file_name: &str,
+    text: impl AsRef<[u8]>,
+    settings: impl Into<Settings>,
+) -> Result<(Option<String>, Vec<Diagnostic>), LoadError> {
+    let Ok(text) = to_text(text.as_ref()) else { return Ok((None, Vec::new())) };
+    let (source, warnings) = prepare(Source::new(file_name, text), &settings.into().xacro)?;
+    Ok((source.expansion.map(|expansion| expansion.text.clone()), warnings))
 }
 
 /// The inputs from this machine that the expansion of a xacro text used: environment variables, and files that are

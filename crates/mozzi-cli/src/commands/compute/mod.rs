@@ -89,9 +89,7 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
                 queries.len()
             )));
         };
-        if angles::are_degrees() {
-            failure::note(&format!("{file} is read in radians: --deg is for the angles of flags and of printed text"));
-        }
+        angles::of_file(file);
         return Job { file, query, model, environment, table, robot }.run();
     }
     let mut found = Vec::new();
