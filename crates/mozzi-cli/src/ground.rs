@@ -1,6 +1,6 @@
 //! `--ground`, `--contact` and `--contacts FILE.json`: points of the robot and planes that stop them.
 
-use crate::failure::{self, Result};
+use crate::failure::{self, Failure, Result};
 use crate::json_file;
 use crate::numbers::number;
 use crate::robot::RobotArguments;
@@ -28,8 +28,8 @@ pub struct GroundArguments {
     #[arg(long, value_name = "E")]
     restitution: Option<String>,
     /// Contact points and planes from a file: {"points": [{"frame": …, "at": [x,y,z], "radius": …, "friction": …,
-    /// "restitution": …}], "planes": [{"name": …, "pose": [qw,qx,qy,qz,x,y,z], "velocity": [x,y,z]}]}; the plane's
-    /// z-axis points towards the robot. Without points those of --contact or of the collision shapes; without planes
+    /// "restitution": …}], "planes": [{"name": …, "pose": [qw,qx,qy,qz,x,y,z], "velocity": [x,y,z]}]}; planes and the
+    /// velocities of belts are in {s}, a plane's z-axis points towards the robot. Without points those of --contact or of the collision shapes; without planes
     /// the ground
     #[arg(long, value_name = "FILE.json")]
     contacts: Option<String>,
@@ -124,11 +124,15 @@ impl GroundArguments {
             return self.contact.iter().map(|name| of_frame(name)).collect();
         }
         let found = contact_points(model, &shapes.shapes, Path::new(&robot.model), None, (given, restitution));
+        if let Some(reason) = found.left_out.first().filter(|_| robot.is_strict()) {
+            return Err(Failure::wrong(format!(
+                "{}: {reason}; --strict refuses a shape that is left out",
+                self.flag()
+            )));
+        }
         found.left_out.iter().for_each(|reason| failure::note(&format!("{}: {reason}", self.flag())));
-        if !shapes.soft.is_empty() {
-            let listed = shapes.soft.iter().map(|(name, count)| format!("{name} ({})", counted(*count, "geom")));
-            let listed = listed.collect::<Vec<_>>().join(", ");
-            failure::note(&format!("{}: not used, since contacts are rigid: {listed}", self.flag()));
+        if !shapes.unused.is_empty() {
+            failure::note(&format!("{}: not used by rigid contacts: {}", self.flag(), shapes.unused.join(", ")));
         }
         if !found.points.is_empty() {
             return Ok(found.points);
@@ -171,7 +175,7 @@ pub fn settle(flag: &str, model: &Model, contacts: &Contacts, theta: &mut [f64],
     let remedy =
         if model.is_floating() { "; a start may be 5 cm deep" } else { "; its base is fixed, --floating frees it" };
     let message = format!("{flag}: link `{link}` starts {:.6} m within the ground{remedy}", -lowest);
-    if lowest < -1e-3 { Err(crate::failure::Failure::Wrong(message)) } else { Ok(()) }
+    if lowest < -1e-3 { Err(Failure::Wrong(message)) } else { Ok(()) }
 }
 
 /// The keys of a file of contacts.

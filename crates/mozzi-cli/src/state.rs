@@ -90,10 +90,19 @@ impl StartArguments {
         self.state.as_deref().or(self.theta.as_deref().filter(is_state))
     }
 
-    /// True if the pose of a floating base is given.
-    pub fn gives_base(&self, model: &Model) -> bool {
-        let is_of_joints = |text: &String| gives_joints_only(text, model) || text.contains('=');
-        self.state.is_some() || self.theta.as_ref().is_some_and(|text| !is_of_joints(text))
+    /// The positions that are not given.
+    pub fn left_out(&self, model: &Model) -> Vec<bool> {
+        let all = |is_left_out: bool| vec![is_left_out; model.nq()];
+        match self.theta.as_deref() {
+            None => all(self.state.is_none()),
+            Some(text) if text.contains('=') => {
+                let given: Vec<&str> =
+                    text.split(',').filter_map(|entry| Some(entry.split_once('=')?.0.trim())).collect();
+                model.position_names().map(|name| !given.contains(&name)).collect()
+            }
+            Some(text) if gives_joints_only(text, model) => (0..model.nq()).map(|k| k < 7).collect(),
+            Some(_) => all(false),
+        }
     }
 
     /// True if a state is given.

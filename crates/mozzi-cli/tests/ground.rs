@@ -136,7 +136,7 @@ fn attributes_of_soft_contacts_are_named_and_ellipsoids_touch() {
     let egg = file(&folder("ground_soft"), "egg.xml", egg);
     let run = common::mozzi(&["simulate", &egg, "--ground", "--time", "0.2", "--json"]);
     let said = String::from_utf8_lossy(&run.stderr);
-    assert!(said.contains("--ground: not used, since contacts are rigid: margin (1 geom), solref (1 geom)"), "{said}");
+    assert!(said.contains("--ground: not used by rigid contacts: margin (1 geom), solref (1 geom)"), "{said}");
     assert!(said.contains("--ground: 1 contact point, 1 plane"), "{said}");
     let found: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
     let last = rows(&found["theta"]).pop().expect("rows");

@@ -130,12 +130,13 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
     Err(Failure::Stopped(text))
 }
 
-/// Moves the joints of a start that nobody gave into their limits.
-fn within_limits(model: &Model, theta: &mut [f64]) {
+/// Moves the joints of a start that nobody gave, which are left out, into their limits.
+fn within_limits(model: &Model, theta: &mut [f64], left_out: &[bool]) {
     let bounds = Bounds::of(model);
     for ((k, &[low, high]), name) in bounds.joints.iter().enumerate().zip(model.joint_names()) {
         let value = bounds.value(theta, k);
-        if !(low..=high).contains(&value) {
+        let is_own = bounds.places[k].positions().all(|q| left_out[q]);
+        if is_own && !(low..=high).contains(&value) {
             let limit = value.clamp(low, high);
             bounds.places[k].put_at_limit(theta, limit);
             failure::note(&format!("joint `{name}` starts at its limit {limit}: {value} is beyond"));
@@ -190,14 +191,14 @@ impl SimulateArguments {
             }
         }
         let contacts = self.ground.contacts(&self.robot, model)?;
-        let is_own = self.start.state.is_none() && self.start.theta.is_none() && followed.is_none();
+        let left_out = if followed.is_none() { self.start.left_out(model) } else { vec![false; model.nq()] };
         let limits = self.joint_limits.unwrap_or(if contacts.is_empty() { Limit::Report } else { Limit::Respect });
-        if is_own && limits == Limit::Respect {
-            within_limits(model, &mut theta);
+        if limits == Limit::Respect {
+            within_limits(model, &mut theta, &left_out);
         }
         if !contacts.is_empty() {
-            let is_free = !self.start.gives_base(model) && followed.is_none();
-            settle(self.ground.flag(), model, &contacts, &mut theta, is_free)?;
+            let is_own = model.is_floating() && left_out[6]; // the base's z
+            settle(self.ground.flag(), model, &contacts, &mut theta, is_own)?;
         }
         let (theta, dtheta) = assembled(model, theta, dtheta)?;
         let hold = Hold::new(&theta, model.n());

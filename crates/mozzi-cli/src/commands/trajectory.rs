@@ -255,7 +255,7 @@ struct Row {
 }
 
 impl Row {
-    /// What is not a finite number.
+    /// The part that is not finite.
     fn not_finite(&self) -> Option<&'static str> {
         let parts = [
             ("a position", &self.theta),

@@ -99,8 +99,8 @@ fn state(basis: &Basis, coefficients: &[f64], t: f64) -> [Vec<f64>; 3] {
 /// Searches a motion. `stop` ends the search with the best so far.
 ///
 /// # Errors
-/// [`Error::BadOption`] for a duration that is not positive, limits of a wrong length, a start at which a limit is broken,
-/// or limits that leave no room for a motion.
+/// [`Error::BadOption`] for a duration that is not positive, limits of a wrong length, a start at which a limit is
+/// broken, or limits that leave no room for a motion.
 pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -> Result<Excitation, Error> {
     without_constraints(model)?;
     check(model, options)?;

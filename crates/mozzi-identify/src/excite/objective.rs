@@ -394,8 +394,7 @@ mod tests {
         assert!(rest[1].iter().chain(&rest[2]).all(|x| x.abs() < 1e-9));
     }
 
-    /// The box, sphere and torque limits of a motion about a start that keeps them, and at the default start, which does
-    /// not.
+    /// Boxes, spheres and torques, about a given start and about one that is found.
     #[test]
     fn boxes_distances_and_torques_hold_all_the_time() {
         let model = robot("ur5");

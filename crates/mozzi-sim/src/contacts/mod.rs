@@ -17,6 +17,8 @@ const DEEPEST: f64 = 1e-3;
 
 /// The largest coefficient of friction: cones beyond it are half-spaces to rounding.
 const LARGEST_MU: f64 = 1e6;
+/// The part of a belt's velocity that may be along its normal: rounding.
+const ALONG: f64 = 1e-6;
 
 /// A plane that stops the robot's contact points: z = 0 of a frame, whose z-axis points towards the robot.
 pub struct Plane<'a> {
@@ -116,9 +118,17 @@ impl Surface {
 
     /// A contact point next to it; T is the configuration of its frame in {s}.
     pub(crate) fn touch(&self, point: &ContactPoint, T: SE3) -> Touch {
+        self.touch_at(point.farthest(self.seen_from(T).0), T)
+    }
+
+    /// As [`touch`](Self::touch), shortly before or after a point of the frame touched.
+    pub(crate) fn touch_like(&self, point: &ContactPoint, T: SE3, like: Vec3) -> Touch {
+        self.touch_at(point.farthest_like(self.seen_from(T).0, like), T)
+    }
+
+    fn touch_at(&self, of_frame: Vec3, T: SE3) -> Touch {
         let axes = self.T.R.matrix().transpose().rows().map(Vec3);
         let n = -axes[2];
-        let of_frame = point.farthest(T.R.inverse_mul(n));
         let at = T * of_frame;
         let from = at - self.T.p;
         let v = self.V.v + self.V.w.cross(from);
@@ -254,7 +264,7 @@ impl Contacts<'_> {
             let (radii, axis) = match *support {
                 Support::Point => ([0.0; 3], z),
                 Support::Sphere { radius } => ([radius; 3], z),
-                Support::Disc { axis, radius } => ([radius; 3], axis),
+                Support::Disc { axis, radius, turn } => ([radius; 3], axis * if turn.is_finite() { 1.0 } else { turn }),
                 Support::Ellipsoid { radii, .. } => (radii, z),
             };
             let numbers = [center.0, axis.0].concat();
@@ -263,6 +273,12 @@ impl Contacts<'_> {
             for radius in radii {
                 check(radius >= 0.0 && radius.is_finite(), "the radius", says(&format!("{radius}")), "at least 0")?;
             }
+        }
+        for Plane { name, motion } in &self.planes {
+            let PlaneMotion::Belt(T, v) = motion else { continue };
+            let (along, speed) = ((T.R * Vec3([0.0, 0.0, 1.0])).dot(*v), Scalar::sqrt(v.dot(*v)));
+            let found = format!("({}, {}, {}) m/s in {{s}}, of plane `{name}`", v.0[0], v.0[1], v.0[2]);
+            check(along.abs() <= ALONG * speed, "the velocity of a belt", found, "a velocity along its plane")?;
         }
         Ok(())
     }

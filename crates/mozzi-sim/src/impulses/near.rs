@@ -12,6 +12,9 @@ use mozzi::model::FrameId;
 
 /// Points of a body that touch a plane at once.
 const MOST: usize = 8;
+/// Points that do not touch act if they are nearer than this part of their body's size: else a long step would take its
+/// upper side for a foot.
+const SHARE: f64 = 2e-3;
 /// Points that carried in the last step count as if they were farther from others by this factor.
 const CARRIED: f64 = 1.02;
 
@@ -63,19 +66,20 @@ impl Impulses<'_> {
             let [T, T_next] = [theta, next].map(|theta| forward_kinematics(self.model, theta, cloud.frame));
             for (plane, (surface, surface_next)) in now.iter().zip(&later).enumerate() {
                 let height = |surface: &Surface, at: Vec3| surface.height(at) - cloud.radius;
-                if height(surface, T * cloud.center).min(height(surface_next, T_next * cloud.center)) > self.reach {
+                let reach = if cloud.radius > 0.0 { self.reach.min(SHARE * cloud.radius) } else { self.reach };
+                if height(surface, T * cloud.center).min(height(surface_next, T_next * cloud.center)) > reach {
                     continue;
                 }
                 let planes = [surface.seen_from(T), surface_next.seen_from(T_next)];
                 let candidate = |&(point, center, radius): &(usize, Vec3, f64)| {
                     let [now, then] = planes.map(|(n, d)| -(n.dot(center) + d));
-                    if now.min(then) - radius > self.reach {
+                    if now.min(then) - radius > reach {
                         return None;
                     }
                     let of: &ContactPoint = &self.contacts.points[point];
                     let [now, then] = planes.map(|(n, d)| -(n.dot(of.farthest(n)) + d));
                     let gap = now.min(then);
-                    (gap <= self.reach).then(|| {
+                    (gap <= reach).then(|| {
                         let key = Key::Contact(point, plane);
                         let carried = self.memory.carrying.iter().any(|&(other, _)| other == key);
                         Candidate { point, touch: surface.touch(of, T), gap, carried }

@@ -24,6 +24,8 @@ const AT_LIMIT: f64 = 1e-11;
 /// it would for each row alone.
 const REGULAR: [f64; 5] = [1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
 const FARTHEST: f64 = 10.0;
+/// Anchors are so many times as compliant: where a joint cannot meet both, the gap closes.
+const YIELDS: f64 = 1e7;
 /// And relative to its largest entry: a row of a loop that holds anyway is rounding.
 const NOISE: f64 = 1e-14;
 /// No correction moves a joint farther, rad or m.
@@ -37,6 +39,13 @@ enum OpenRow {
     Stop(usize, usize),
     /// A point of a frame, along one of its axes.
     Point(FrameId, Touch, usize),
+}
+
+impl OpenRow {
+    /// An anchor yields to gaps, loops and limits where it stands against them.
+    fn compliance(&self) -> f64 {
+        if matches!(self, OpenRow::Point(_, _, 1..)) { YIELDS } else { 1.0 }
+    }
 }
 
 /// A configuration with its rows, what is left to move along them, and whether that is at most half as far.
@@ -81,19 +90,22 @@ impl Impulses<'_> {
         Ok(changes)
     }
 
-    /// A configuration with smaller errors, Σ e²/G_rr, which is δᵀMδ as if each row were alone. None if there is none.
+    /// A configuration with smaller errors, Σ e²/G_rr, which is δᵀMδ as if each row were alone; less of anchors. None if there is none.
     fn nearer(&mut self, t: f64, theta: &[f64], open: Vec<OpenRow>, errors: &DVector<f64>) -> Option<Nearer> {
+        let yields: Vec<f64> = open.iter().map(OpenRow::compliance).collect();
         let J = self.jacobian(theta, open);
         let G = self.delassus(&J);
         let least = NOISE * G.diagonal().amax() + f64::MIN_POSITIVE;
-        let size = |e: &DVector<f64>| (0..e.len()).map(|r| e[r] * e[r] / (G[(r, r)] + least)).sum::<f64>();
+        let way = |e: &DVector<f64>, r: usize| e[r] * e[r] / (G[(r, r)] + least);
+        let size = |e: &DVector<f64>| (0..e.len()).map(|r| way(e, r) / yields[r]).sum::<f64>();
         let before = size(errors);
+        let farthest = FARTHEST * FARTHEST * (0..errors.len()).map(|r| way(errors, r)).sum::<f64>();
         REGULAR.iter().find_map(|regular| {
             let mut sum = G.clone();
-            (0..G.nrows()).for_each(|r| sum[(r, r)] += G[(r, r)] * regular + least);
+            (0..G.nrows()).for_each(|r| sum[(r, r)] += G[(r, r)] * regular * yields[r] + least);
             let p = sum.cholesky()?.solve(errors);
             // δ = M⁻¹Jᵀp, δᵀMδ = pᵀG p
-            if !(p.dot(&(&G * &p)) <= FARTHEST * FARTHEST * before) {
+            if !(p.dot(&(&G * &p)) <= farthest) {
                 return None;
             }
             let (mut change, mut theta) = (J.tr_mul(&p), theta.to_vec());

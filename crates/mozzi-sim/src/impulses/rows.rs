@@ -52,6 +52,8 @@ pub(crate) struct Touching {
     pub first: usize,
     /// n, t₁ and t₂ in {s}.
     pub axes: [Vec3; 3],
+    /// The touching point in its frame.
+    pub of_frame: Vec3,
     /// The distance at the middle of the step, m.
     pub gap: f64,
 }
@@ -83,6 +85,7 @@ impl Impulses<'_> {
                 u[r] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
             }
         }
+        let mut touches = system.touches.iter(); // in the order of the rows
         for &(key, first, _) in &system.rows {
             match key {
                 Key::Constraint(_) => {}
@@ -92,8 +95,11 @@ impl Impulses<'_> {
                     u[first] = -row.iter().zip(dtheta).map(|(a, rate)| a * rate).sum::<f64>();
                 }
                 Key::Contact(point, plane) => {
-                    self.columns(theta, self.contacts.points[point].frame, &mut columns);
-                    let touch = self.touch(theta, point, &surfaces[plane]);
+                    let Some(then) = touches.next() else { continue };
+                    let of = &self.contacts.points[point];
+                    self.columns(theta, of.frame, &mut columns);
+                    let T = forward_kinematics(self.model, theta, of.frame);
+                    let touch = surfaces[plane].touch_like(of, T, then.of_frame);
                     let V = twist_of(&columns.1, dtheta);
                     let v = touch.R * (V.v + V.w.cross(touch.of_frame));
                     for k in 0..3 {
@@ -165,7 +171,8 @@ impl Impulses<'_> {
                 rows.extend(point_row(&columns.1, &touch, touch.axes[k]).iter());
                 w.push(touch.speeds[k]);
             }
-            touches.push(Touching { pair: (point, plane), first, axes: touch.axes, gap: touch.gap });
+            let Touch { axes, of_frame, gap, .. } = touch;
+            touches.push(Touching { pair: (point, plane), first, axes, of_frame, gap });
         }
         self.mass.factor(theta, 1.0, diagonal)?;
         let J = DMatrix::from_row_slice(w.len(), n, &rows);

@@ -133,7 +133,7 @@ fn a_wheel_rolls_down_inside_the_cone_and_slides_outside() {
     let angle = 20_f64.to_radians();
     let turn = mozzi::SO3::exp(Vec3([0.0, angle, 0.0]));
     for (mu, a) in [(0.2, 2.0 / 3.0 * G * angle.sin()), (0.1, G * (angle.sin() - 0.1 * angle.cos()))] {
-        let support = Support::Disc { axis: Vec3([0.0, 1.0, 0.0]), radius: RADIUS };
+        let support = Support::Disc { axis: Vec3([0.0, 1.0, 0.0]), radius: RADIUS, turn: 0.0 };
         let contacts = Contacts {
             points: vec![contact(&model, "wheel", support, mu, 0.0)],
             planes: vec![Plane::fixed("slope", SE3::new(turn, Vec3::zero()))],

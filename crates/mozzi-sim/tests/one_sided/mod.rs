@@ -3,6 +3,7 @@
 
 mod balls;
 mod boxes;
+mod discs;
 mod drops;
 mod dry_friction;
 mod pinocchio;

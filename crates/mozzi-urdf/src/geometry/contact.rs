@@ -7,12 +7,15 @@ use mozzi::model::description::{Joint, JointKind};
 use mozzi::model::{ContactPoint, Support};
 use mozzi::{Model, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
 
 /// More contact points are left out: each costs time at every step.
 const MOST_POINTS: usize = 100_000;
 /// A larger mesh is refused.
 const MOST_BYTES: u64 = 64 << 20;
+/// Points of a cylinder's rim, from the lowest: it may stand on them.
+const TURNS: [f64; 4] = [0.0, FRAC_PI_2, PI, 1.5 * PI];
 
 /// The contact points of a robot's shapes, and the shapes that have none, each with the reason.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +30,7 @@ pub struct ShapeContacts {
 pub const FRICTION: f64 = 0.7;
 
 /// The points at which planes touch shapes, of links that move: the corners of boxes, spheres, the two ends of
-/// capsules, the rims of cylinders as discs, ellipsoids, and the extreme vertices of meshes (STL and OBJ; of the 2,000
+/// capsules, four points of each rim of a cylinder, the lowest first, ellipsoids, and the extreme vertices of meshes (STL and OBJ; of the 2,000
 /// directions of a sphere, so at most that many). All get the restitution e and the friction coefficient μ that is
 /// given, or else their own, or [`FRICTION`].
 pub fn contact_points(
@@ -122,7 +125,8 @@ fn supports(
             [-0.5, 0.5].map(|s| (at(0.0, 0.0, s * length), Support::Sphere { radius: *radius })).to_vec()
         }
         Form::Cylinder { radius, length } => {
-            [-0.5, 0.5].map(|s| (at(0.0, 0.0, s * length), Support::Disc { axis, radius: *radius })).to_vec()
+            let rim = |s: f64, turn: f64| (at(0.0, 0.0, s * length), Support::Disc { axis, radius: *radius, turn });
+            [-0.5, 0.5].into_iter().flat_map(|s| TURNS.map(|turn| rim(s, turn))).collect()
         }
         Form::Ellipsoid { radii } => vec![(T.p, Support::Ellipsoid { axes: T.R, radii: *radii })],
         Form::Mesh { file, scale } => {
@@ -158,14 +162,14 @@ mod tests {
         let model = crate::parse("foot.urdf", ROBOT).expect("sound").description.build().expect("sound");
         let shapes = parse("foot.urdf", ROBOT).shapes;
         let found = contact_points(&model, &shapes, Path::new("foot.urdf"), None, (Some(0.5), 0.1));
-        assert_eq!(found.points.len(), 8 + 1 + 2 + 2);
+        assert_eq!(found.points.len(), 8 + 1 + 8 + 2);
         assert!(found.points.iter().all(|point| point.mu == 0.5 && point.restitution == 0.1));
         assert_eq!((&*found.points[0].name, &*found.points[3].name), ("foot", "foot.3"));
         // the farthest down: the capsule's lower end at −1.3, the box at −1, the lying cylinder at −0.2
         let contacts = mozzi_sim::Contacts { points: found.points, planes: vec![mozzi_sim::Plane::ground()] };
         let gaps = contacts.gaps(&model, 0.0, &[0.0]);
         let lowest = |range: std::ops::Range<usize>| gaps[range].iter().fold(f64::INFINITY, |a, b| a.min(*b));
-        for (range, z) in [(0..8, -1.0), (8..9, -0.1), (9..11, -0.2), (11..13, -1.3)] {
+        for (range, z) in [(0..8, -1.0), (8..9, -0.1), (9..17, -0.2), (17..19, -1.3)] {
             assert!((lowest(range.clone()) - z).abs() < 1e-12, "{range:?} {gaps:?}");
         }
         assert!(found.left_out.len() == 1 && found.left_out[0].contains("nowhere.stl"), "{:?}", found.left_out);

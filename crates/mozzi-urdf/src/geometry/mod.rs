@@ -44,11 +44,10 @@ use std::path::Path;
 pub struct Geometry {
     /// In the order of the file.
     pub shapes: Vec<Shape>,
-    /// Planes of MJCF's world, with their names.
+    /// Planes of an MJCF that do not move and touch the robot, with their names.
     pub planes: Vec<(String, SE3)>,
-    /// Attributes of MuJoCo's soft contacts, which mozzi's rigid ones do not use, each with the number of shapes that
-    /// touch and have it.
-    pub soft: Vec<(&'static str, usize)>,
+    /// Attributes and elements of MuJoCo's contacts, in words, that mozzi's rigid ones do not use.
+    pub unused: Vec<String>,
     /// Invalid shapes, which are omitted: warnings, since shapes do not affect the dynamics.
     pub left_out: Vec<Diagnostic>,
 }
@@ -235,6 +234,44 @@ mod tests {
         let free = FIGURE.replace("<joint type=\"hinge\" axis=\"0 1 0\"/>", "<freejoint/>");
         let shapes = parse("figure.xml", free).shapes;
         assert!(shapes.len() == 5 && shapes.iter().all(|shape| shape.link == "arm"));
+    }
+
+    /// As in MuJoCo: by `contype` and `conaffinity`, those of classes too, on planes of the world and of bodies that do
+    /// not move; what is not used is named.
+    #[test]
+    fn geoms_touch_planes_by_their_bits() {
+        const BOX: &str = "<geom class='b' type='box' size='1 1 1'/>";
+        let scene = |defaults: &str, plane: &str, rest: &str| {
+            parse(
+                "scene.xml",
+                format!(
+                    "<mujoco><default>{defaults}<default class='b'/></default><worldbody>{plane}
+                     <body name='a'><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>{BOX}</body>
+                     </worldbody>{rest}</mujoco>"
+                ),
+            )
+        };
+        let of = |defaults: &str, plane: &str| {
+            let found = scene(defaults, plane, "");
+            (found.shapes[0].touches, found.planes.len(), found.shapes[0].friction)
+        };
+        const PLANE: &str = "<geom type='plane' size='1 1 1'/>";
+        let with = |attributes: &str| PLANE.replace("/>", &format!(" contype='1' conaffinity='1' {attributes}/>"));
+        assert_eq!(of("", PLANE), (true, 1, Some(1.0)));
+        assert_eq!(of("<geom friction='.2 .005'/>", PLANE), (true, 1, Some(0.2)));
+        assert_eq!(of("<geom contype='0' conaffinity='0'/>", &with("")), (false, 0, Some(1.0)));
+        assert_eq!(of("<geom contype='0' conaffinity='0'/>", ""), (false, 0, Some(1.0)));
+        assert_eq!(of("<geom contype='2' conaffinity='2'/>", PLANE), (true, 1, Some(1.0)));
+        assert_eq!(of("<geom contype='2' conaffinity='2'/>", ""), (false, 0, Some(1.0)));
+        assert_eq!(of("<geom contype='2' conaffinity='4'/>", PLANE), (false, 0, Some(1.0)));
+        let on_a_table = scene("", &format!("<body pos='0 0 -0.2'>{PLANE}</body>"), "");
+        assert_eq!(on_a_table.planes[0].1.p, Vec3([0.0, 0.0, -0.2]));
+        let rest = "<option><flag contact='disable'/></option>
+                    <contact><exclude body1='world' body2='a'/></contact>";
+        let found = scene("<geom friction='.3' condim='1' priority='0' margin='.01'/>", &with("friction='.4'"), rest);
+        let friction = "the friction 0.4 of the plane `ground` (MuJoCo takes the larger of two)";
+        let expected = ["margin (2 geoms)", "condim (2 geoms)", friction, "1 <exclude>", "contact=\"disable\""];
+        assert_eq!(found.unused, expected);
     }
 
     #[test]

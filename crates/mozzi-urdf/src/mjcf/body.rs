@@ -21,6 +21,8 @@ struct Carrier {
     link: usize,
     /// No joint moves it.
     is_static: bool,
+    /// Its pose, if no joint moves it.
+    T: SE3,
     depth: usize,
 }
 
@@ -37,9 +39,9 @@ impl<'a> Model<'a> {
             let message = "worldbody: has a joint, but the world does not move";
             cx.findings.error("misplaced_joint", joint.item.element.span(), message);
         }
-        self.draw(&contents.geoms, 0);
+        self.draw(&contents.geoms, 0, Some(SE3::identity()));
         contents.geoms.iter().for_each(|geom| self.check_geom(&geom.item.element.called("worldbody: geom"), cx));
-        self.rest(contents, Carrier { link: 0, is_static: true, depth: 0 }, cx);
+        self.rest(contents, Carrier { link: 0, is_static: true, T: SE3::identity(), depth: 0 }, cx);
     }
 
     /// A body and its descendants.
@@ -53,6 +55,7 @@ impl<'a> Model<'a> {
         element.check_children(&vocabulary::BODY, cx);
         let class = self.classes.named(&element, "childclass", inside.around.class, cx);
         let mut origin = inside.T * pose(&item, &self.compiler, cx);
+        let T = carrier.T * origin;
         let compensation = item.number("gravcomp", 0.0, cx);
         if compensation != 0.0 {
             self.ignored.force("gravcomp", &item, "gravcomp", "gravity compensation");
@@ -90,8 +93,8 @@ impl<'a> Model<'a> {
             self.tree.joint(fixed, [parent, link], origin, Place::new(element.span()));
         }
         self.tree.links.push(Link { name, inertia, compensation, place });
-        self.draw(&contents.geoms, link);
-        self.rest(contents, Carrier { link, is_static, depth: carrier.depth + 1 }, cx);
+        self.draw(&contents.geoms, link, is_static.then_some(T));
+        self.rest(contents, Carrier { link, is_static, T, depth: carrier.depth + 1 }, cx);
     }
 
     /// The sites and the child bodies of a body.

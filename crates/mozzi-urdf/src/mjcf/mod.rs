@@ -51,6 +51,7 @@ mod body;
 mod class;
 mod closure;
 mod compiler;
+mod contact;
 mod contents;
 mod coordinates;
 mod depth;

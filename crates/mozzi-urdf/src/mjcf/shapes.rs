@@ -3,6 +3,7 @@
 use super::Model;
 use super::attributes::Item;
 use super::class::{Class, Classes};
+use super::contact::{self, Contact, Plane};
 use super::contents::Inside;
 use super::geom::TYPES;
 use super::mesh::Mesh;
@@ -18,19 +19,16 @@ use std::collections::BTreeMap;
 /// MuJoCo does not draw groups from this one on; by convention they contain the shapes for contacts.
 const FIRST_HIDDEN_GROUP: f64 = 3.0;
 
-/// Attributes of MuJoCo's soft contacts, which rigid contacts do not have.
-const SOFT: [&str; 5] = ["margin", "gap", "solref", "solimp", "solmix"];
-
 /// The assets that geoms refer to, and the shapes found so far.
 #[derive(Default)]
 pub(crate) struct Shapes {
     colors: BTreeMap<String, [f64; 4]>,
-    /// With the index of their link.
-    found: Vec<(usize, Shape)>,
-    /// Planes of the world that geoms with the usual bits touch.
-    planes: Vec<(String, SE3)>,
-    /// Attributes of soft contacts, with the number of geoms that touch and have them.
-    soft: BTreeMap<&'static str, usize>,
+    /// With the index of their link, and whether they are drawn.
+    found: Vec<(usize, bool, (Shape, Contact))>,
+    /// Planes that do not move.
+    planes: Vec<Plane>,
+    /// Elements about contacts that are not read.
+    not_read: Vec<String>,
     /// Findings about shapes: warnings, since shapes do not affect the dynamics.
     pub cx: Context,
 }
@@ -38,7 +36,7 @@ pub(crate) struct Shapes {
 impl Shapes {
     /// The colours of the assets.
     pub fn new<'a>(sections: &[Element<'a>], classes: &Classes<'a>) -> Self {
-        let mut shapes = Shapes::default();
+        let mut shapes = Shapes { not_read: contact::not_read(sections), ..Shapes::default() };
         let of = |name: &'static str| sections.iter().filter(move |section| section.name() == name);
         for asset in of("asset").flat_map(Element::elements) {
             if asset.name() == "material" {
@@ -53,42 +51,49 @@ impl Shapes {
 
     /// The shapes, by the names of their links.
     pub fn named(self, links: &[mozzi::model::description::Link]) -> (Geometry, Context) {
-        let name = |(link, shape): (usize, Shape)| Some(Shape { link: links.get(link)?.name.clone(), ..shape });
-        let shapes = self.found.into_iter().filter_map(name).collect();
-        let soft = self.soft.into_iter().collect();
-        (Geometry { shapes, planes: self.planes, soft, left_out: Vec::new() }, self.cx)
+        let (mut drawn, mut found) = (Vec::new(), Vec::new());
+        for (link, is_drawn, (shape, contact)) in self.found {
+            let Some(link) = links.get(link) else { continue };
+            drawn.push(is_drawn);
+            found.push((Shape { link: link.name.clone(), ..shape }, contact));
+        }
+        let (planes, mut unused) = contact::decide(&mut found, self.planes);
+        unused.extend(self.not_read);
+        let is_kept = |((shape, _), is_drawn): ((Shape, Contact), bool)| (is_drawn || shape.touches).then_some(shape);
+        let shapes = found.into_iter().zip(drawn).filter_map(is_kept).collect();
+        (Geometry { shapes, planes, unused, left_out: Vec::new() }, self.cx)
     }
 
     /// Keeps the shapes of some links and renumbers them.
     pub fn renumber(&mut self, stays: &[bool], numbers: &[usize]) {
-        self.found.retain(|(link, _)| stays[*link]);
-        self.found.iter_mut().for_each(|(link, _)| *link = numbers[*link]);
+        self.found.retain(|(link, ..)| stays[*link]);
+        self.found.iter_mut().for_each(|(link, ..)| *link = numbers[*link]);
     }
 }
 
 impl<'a> Model<'a> {
-    /// Adds the shapes of a body's geoms, if shapes are read.
-    pub fn draw(&mut self, geoms: &[Inside<'a>], link: usize) {
+    /// Adds the shapes of a body's geoms, if shapes are read. `still` is the pose of a body that no joint moves.
+    pub fn draw(&mut self, geoms: &[Inside<'a>], link: usize, still: Option<SE3>) {
         let Some(mut shapes) = self.shapes.take() else { return };
         for geom in geoms {
             let subject = geom.item.element.attribute("name").map(|name| format!("geom `{}`", shown(name.text)));
             let element = geom.item.element.called(subject.unwrap_or_else(|| "geom".to_string()));
             let item = Item { element, ..geom.item.clone() };
-            if link == 0 && item.word("type", &TYPES, &mut shapes.cx) == Some("plane") && touches(&item, &mut shapes.cx)
-            {
+            let contact = Contact::of(&item, &mut shapes.cx);
+            let is_plane = item.word("type", &TYPES, &mut shapes.cx) == Some("plane");
+            if let Some(body) = still.filter(|_| is_plane) {
                 let name = item.element.attribute("name").map_or("ground", |name| name.text).to_string();
-                let T = geom.T * pose(&item, &self.compiler, &mut shapes.cx);
-                shapes.planes.push((name, T));
-            }
-            if let Some(shape) = self.shape(&item, geom.T, &mut shapes) {
-                shapes.found.push((link, shape));
+                let T = body * geom.T * pose(&item, &self.compiler, &mut shapes.cx);
+                shapes.planes.push(Plane { name, T, contact });
+            } else if let Some((shape, is_drawn)) = self.shape(&item, geom.T, &contact, &mut shapes) {
+                shapes.found.push((link, is_drawn, (shape, contact)));
             }
         }
         self.shapes = Some(shapes);
     }
 
-    /// Nothing for planes and height fields.
-    fn shape(&self, item: &Item<'a>, T: SE3, shapes: &mut Shapes) -> Option<Shape> {
+    /// The shape, and whether it is drawn; nothing for planes and height fields.
+    fn shape(&self, item: &Item<'a>, T: SE3, contact: &Contact, shapes: &mut Shapes) -> Option<(Shape, bool)> {
         let kind = item.word("type", &TYPES, &mut shapes.cx).unwrap_or("sphere");
         let material = || item.value("material").and_then(|value| shapes.colors.get(value.text).copied());
         let color = if item.has("rgba") { item.vector::<4>("rgba", &mut shapes.cx) } else { material() };
@@ -97,15 +102,9 @@ impl<'a> Model<'a> {
         }
         let is_clear = color.is_some_and(|[.., opacity]| opacity <= 0.0);
         let is_hidden = item.number("group", 0.0, &mut shapes.cx) >= FIRST_HIDDEN_GROUP || is_clear;
-        let touches = touches(item, &mut shapes.cx);
-        if is_clear && !touches {
+        if is_clear && !contact.is_any() {
             return None; // neither drawn nor touched
         }
-        for attribute in SOFT.into_iter().filter(|attribute| touches && item.has(attribute)) {
-            *shapes.soft.entry(attribute).or_default() += 1;
-        }
-        let has_own = item.has("friction"); // the first of up to three; MuJoCo's is 1
-        let friction = Some(if has_own { item.overlaid::<3>("friction", &mut shapes.cx)[0] } else { 1.0 });
         let (form, frame) = match item.value("mesh") {
             Some(mesh) => {
                 let found = self.meshes.named(mesh.text, &mut shapes.cx);
@@ -124,14 +123,10 @@ impl<'a> Model<'a> {
             }
         };
         let purpose = if is_hidden { Purpose::Collision } else { Purpose::Visual };
-        Some(Shape { link: String::new(), purpose, T: T * frame, form, color, touches, friction })
+        let friction = Some(contact.friction);
+        let shape = Shape { link: String::new(), purpose, T: T * frame, form, color, touches: false, friction };
+        Some((shape, !is_clear))
     }
-}
-
-/// Whether the geom collides in MuJoCo with a plane whose contype and conaffinity are 1, the defaults.
-fn touches(item: &Item, cx: &mut Context) -> bool {
-    let has_bit = |name, cx: &mut Context| (item.number(name, 1.0, cx) as i64) & 1 == 1;
-    has_bit("contype", cx) | has_bit("conaffinity", cx)
 }
 
 /// v' = S Rᵀ(v − p) of a vertex v: a scale of the file's coordinates, then a rigid motion. If S is not the same in all

@@ -370,4 +370,17 @@ pub(crate) const ACTUATOR: Vocabulary = Vocabulary {
 };
 
 /// Attributes of a default class that only shapes use.
-pub(crate) const LOOKS: [&str; 2] = ["rgba", "material"];
+pub(crate) const LOOKS: [&str; 12] = [
+    "rgba",
+    "material",
+    "contype",
+    "conaffinity",
+    "friction",
+    "condim",
+    "priority",
+    "margin",
+    "gap",
+    "solref",
+    "solimp",
+    "solmix",
+];
