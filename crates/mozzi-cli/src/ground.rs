@@ -29,8 +29,8 @@ pub struct GroundArguments {
     restitution: Option<String>,
     /// Contact points and planes from a file: {"points": [{"frame": …, "at": [x,y,z], "radius": …, "friction": …,
     /// "restitution": …}], "planes": [{"name": …, "pose": [qw,qx,qy,qz,x,y,z], "velocity": [x,y,z]}]}; planes and the
-    /// velocities of belts are in {s}, a plane's z-axis points towards the robot. Without points those of --contact or of the collision shapes; without planes
-    /// the ground
+    /// velocities of belts are in {s}, a plane's z-axis points towards the robot. Without points those of --contact or
+    /// of the collision shapes; without planes the ground
     #[arg(long, value_name = "FILE.json")]
     contacts: Option<String>,
     /// Columns of each contact in the --out table: f_n_NAME and f_t_NAME, the force on its plane along the normal and

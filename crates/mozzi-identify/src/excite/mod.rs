@@ -4,6 +4,8 @@ mod basis;
 pub mod lbfgs;
 mod limits;
 mod objective;
+#[cfg(test)]
+mod tests;
 
 pub use basis::Basis;
 pub use limits::{Box3, MotionLimits, Sphere};

@@ -30,9 +30,9 @@ pub struct ShapeContacts {
 pub const FRICTION: f64 = 0.7;
 
 /// The points at which planes touch shapes, of links that move: the corners of boxes, spheres, the two ends of
-/// capsules, four points of each rim of a cylinder, the lowest first, ellipsoids, and the extreme vertices of meshes (STL and OBJ; of the 2,000
-/// directions of a sphere, so at most that many). All get the restitution e and the friction coefficient μ that is
-/// given, or else their own, or [`FRICTION`].
+/// capsules, four points of each rim of a cylinder, the lowest first, ellipsoids, and the extreme vertices of meshes
+/// (STL and OBJ; of the 2,000 directions of a sphere, so at most that many). All get the restitution e and the friction
+/// coefficient μ that is given, or else their own, or [`FRICTION`].
 pub fn contact_points(
     model: &Model,
     shapes: &[Shape],

@@ -17,7 +17,7 @@ const UNUSED: [(&str, Option<f64>); 7] = [
     ("priority", Some(0.0)),
 ];
 
-/// What decides which geoms touch each other.
+/// The layers in which a geom touches others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bits {
     contype: i64,
