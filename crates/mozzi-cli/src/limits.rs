@@ -1,17 +1,35 @@
 //! Limits of a motion by flags.
 
-use crate::failure::{Result, note};
+use crate::failure::{Failure, Result, note};
 use crate::numbers::one_or_each;
 use crate::text::scalar;
 use mozzi::Model;
 
-/// The limits of a flag, one for all or one for each velocity, "inf" for none; the robot's own without it. A limit
-/// above the robot's own is questioned.
+/// The limits of a flag: one for all, one for each velocity, or `NAME=LIMIT,…` for some of them; "inf" for none. The
+/// robot's own without it. A limit above the robot's own is questioned.
 pub fn of_flag(model: &Model, flag: &str, text: Option<&str>, own: Vec<f64>, are_angles: &[bool]) -> Result<Vec<f64>> {
+    let read = |text: &str, are_angles: &[bool]| match text.trim() {
+        "inf" => Ok(vec![f64::INFINITY; are_angles.len()]),
+        text => one_or_each(flag, text, are_angles),
+    };
     let found = match text {
         None => return Ok(own),
-        Some(text) if text.trim() == "inf" => vec![f64::INFINITY; own.len()],
-        Some(text) => one_or_each(flag, text, are_angles)?,
+        Some(text) if text.contains('=') => {
+            let (mut found, names) = (own.clone(), model.velocity_names().collect::<Vec<_>>());
+            for entry in text.split(',') {
+                let (name, limit) = entry.split_once('=').map_or((entry.trim(), None), |(a, b)| (a.trim(), Some(b)));
+                let (Some(k), Some(limit)) = (names.iter().position(|known| *known == name), limit) else {
+                    let near = mozzi_urdf::did_you_mean(name, names.iter().copied());
+                    let near = near.unwrap_or_else(|| format!("expected {}", names.join(", ")));
+                    return Err(Failure::wrong(format!(
+                        "{flag}: `{entry}` is no JOINT=LIMIT of a known joint; {near}"
+                    )));
+                };
+                found[k] = read(limit, &are_angles[k..=k])?[0];
+            }
+            found
+        }
+        Some(text) => read(text, are_angles)?,
     };
     let above = model.velocity_names().zip(found.iter().zip(&own)).find(|(_, (x, own))| *x > *own);
     if let Some((name, (x, own))) = above {

@@ -32,7 +32,9 @@ impl Sources {
 pub fn build(workspace: &Workspace, sources: &Sources, to: &Path) -> Result<(), String> {
     let mut maturin = command(workspace, "build", &sources.project, to)?;
     if cfg!(target_os = "linux") {
-        maturin.args(["--zig", "--compatibility"]).arg(format!("manylinux_2_{}", zig::GLIBC));
+        maturin
+            .args(["--compression-level", "9", "--zig", "--compatibility"])
+            .arg(format!("manylinux_2_{}", zig::GLIBC));
     }
     if sources.offline {
         maturin.env("CARGO_NET_OFFLINE", "true");

@@ -55,7 +55,7 @@ pub struct TrajectoryArguments {
     /// trapezoidal only: the fraction of the time spent accelerating, and decelerating
     #[arg(long, value_name = "FRACTION", default_value = "0.25")]
     ramp_fraction: String,
-    /// Velocity limits, one number or one for each joint, rad/s or m/s [default: the robot's]
+    /// Velocity limits, one number, one for each joint or JOINT=LIMIT,…, rad/s or m/s [default: the robot's]
     #[arg(long, value_name = "LIST")]
     max_velocity: Option<String>,
     /// Acceleration limits, rad/s² or m/s² [default: the robot's, which URDF 1.2 has]
@@ -232,15 +232,22 @@ impl TrajectoryArguments {
         };
         let frame = model.end_effector()?;
         let start = model.forward_kinematics(&from, frame)?;
-        let goal = match (to, self.goal.read()?) {
-            (Some(to), None) => model.forward_kinematics(&to, frame)?,
+        let goal = match (&to, self.goal.read()?) {
+            (Some(to), None) => model.forward_kinematics(to, frame)?,
             (None, Some(Goal::Pose(T))) => T,
             (None, Some(Goal::Position(p))) => SE3::new(start.R, p),
             (None, Some(Goal::Orientation(R))) => SE3::new(R, start.p),
             _ => return Err(Failure::wrong("--path expects either --to, or --position, --rpy or --quaternion")),
         };
         let deviation = number("--deviation", &self.deviation)?;
-        Ok(Box::new(Cartesian::new(model, frame, &from, goal, shape, deviation)?))
+        let path = Cartesian::new(model, frame, &from, goal, shape, deviation)?;
+        let end = path.at(1.0).theta;
+        let is_off = |to: &Vec<f64>| end.iter().zip(to).any(|(a, b)| (a - b).abs() > 1e-3);
+        if to.as_ref().is_some_and(is_off) {
+            let (end, frame) = (crate::table::short(&end), model.frame_name(frame));
+            failure::note(&format!("the path of `{frame}` ends at the pose of --to, at other positions: θ = {end}"));
+        }
+        Ok(Box::new(path))
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod bodies;
 mod constraints;
+mod exchanged;
 mod faults;
 mod places;
 mod shapes;

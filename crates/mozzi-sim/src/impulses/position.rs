@@ -90,8 +90,8 @@ impl Impulses<'_> {
         Ok(changes)
     }
 
-    /// A configuration with smaller errors, Σ e²/G_rr, which is δᵀMδ as if each row were alone; less of anchors. None if
-    /// there is none.
+    /// A configuration with smaller errors, Σ e²/G_rr, which is δᵀMδ as if each row were alone, of anchors a part of
+    /// it. None if there is none.
     fn nearer(&mut self, t: f64, theta: &[f64], open: Vec<OpenRow>, errors: &DVector<f64>) -> Option<Nearer> {
         let yields: Vec<f64> = open.iter().map(OpenRow::compliance).collect();
         let J = self.jacobian(theta, open);

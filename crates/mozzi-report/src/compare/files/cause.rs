@@ -10,6 +10,8 @@ pub enum Change {
     Joint(String, Property),
     /// A joint's other parent, with its place there.
     Parent(String, String, SE3, JointKind),
+    /// The names of two joints are exchanged.
+    Names([String; 2]),
     /// The inertias of these links.
     Inertia(Vec<(String, SpatialInertia)>),
     /// It enters no force here: limits, couplings, names.
@@ -20,6 +22,8 @@ pub enum Change {
 pub enum Property {
     Damping(f64),
     Friction(f64),
+    /// Damping, then friction.
+    Losses([f64; 2]),
     Armature(f64),
     Stiffness(f64),
     SpringReference(f64),
@@ -69,7 +73,18 @@ impl Change {
                     robot.links.iter_mut().filter(|link| link.name == *name).for_each(|link| link.inertia = *inertia);
                 }
             }
+            Change::Names(names) => exchange(robot, names),
             Change::NoForce => {}
+        }
+    }
+}
+
+/// Gives each of two joints the other's name.
+pub fn exchange(robot: &mut Description, [one, two]: &[String; 2]) {
+    for joint in &mut robot.joints {
+        let other = if joint.name == *one { two } else { one };
+        if [one, two].contains(&&joint.name) {
+            joint.name.clone_from(other);
         }
     }
 }
@@ -79,6 +94,7 @@ impl Property {
         match self {
             Property::Damping(x) => joint.damping = x,
             Property::Friction(x) => joint.friction = x,
+            Property::Losses(both) => [joint.damping, joint.friction] = both,
             Property::Armature(x) => joint.armature = x,
             Property::Stiffness(x) => joint.stiffness = x,
             Property::SpringReference(x) => joint.spring_reference = x,

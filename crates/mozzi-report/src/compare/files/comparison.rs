@@ -1,6 +1,6 @@
 //! The comparison of two files.
 
-use super::cause::Cause;
+use super::cause::{Cause, Change, exchange};
 use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
 use super::number::shown;
@@ -53,16 +53,25 @@ pub fn compare_files(
         (one.base, two.base) = (mozzi::Base::Fixed, mozzi::Base::Fixed);
         format!("the base is free in {free} only; compared with a fixed base")
     });
-    let matched = matched(&one, &two)?;
+    let mut matched = matched(&one, &two)?;
     let states_of = States::random(&one, &matched.a, states, seed)?;
     let (mine, theirs) = (states_of.numbers(&matched.a)?, states_of.numbers(&matched.b)?);
     let before = states_of.gaps(&mine, &theirs);
+    // causes are sought behind exchanged names
+    let exchanged = matched.exchanged();
+    exchanged.iter().for_each(|names| exchange(&mut matched.b, names));
     let mut causes = joints::causes(&matched, &b.name)?;
     let mut accounted = matched.a.clone();
     causes.iter().for_each(|cause| cause.change.apply(&mut accounted));
     let (of_bodies, mut notes) = merged::causes(&matched, &home(&accounted).or_else(|_| home(&matched.a))?, [a, b])?;
     of_bodies.iter().for_each(|cause| cause.change.apply(&mut accounted));
     causes.extend(of_bodies);
+    if let Some(names) = exchanged {
+        let sentence = format!("{} has the names of `{}` and `{}` exchanged", b.name, names[0], names[1]);
+        let cause = Cause::new("names", &names[0].clone(), sentence, true, Change::Names(names));
+        cause.change.apply(&mut accounted);
+        causes.push(cause);
+    }
     let after = match states_of.numbers(&accounted) {
         Ok(accounted) => states_of.gaps(&accounted, &theirs),
         Err(_) => before.clone(), // a robot that cannot be built explains nothing

@@ -12,9 +12,12 @@ pub struct Body {
     pub I: Sym3,
 }
 
+/// kg in a pound.
+const POUND: f64 = 0.45359237;
+
 const NAMES: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
-/// Digits that converters keep.
-const DIGITS: f64 = 2e-6;
+/// Half a unit of the sixth digit, which converters keep.
+const DIGITS: f64 = 5.1e-6;
 
 impl Body {
     pub fn of(G: SpatialInertia) -> Self {
@@ -116,12 +119,25 @@ fn forward(
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         return Some(format!("{other} has the {of} in other units: {}", parts.join(", ")));
     }
+    let another_center = || {
+        let mirrored =
+            (0..3).filter(|&k| b.c.0[k] != 0.0 && same_mass(-a.c.0[k], b.c.0[k])).map(|k| ["x", "y", "z"][k]);
+        let mirrored = mirrored.collect::<Vec<_>>().join(", ");
+        let rest = (0..3).all(|k| same_mass(a.c.0[k].abs(), b.c.0[k].abs()));
+        let why =
+            if rest && !mirrored.is_empty() { format!(", with the other sign of {mirrored}") } else { String::new() };
+        format!("another centre of mass of `{link}`: {} instead of {}{why}", vector(b.c), vector(a.c))
+    };
+    let another_mass = || {
+        let unit = match b.m / a.m {
+            ratio if (ratio * POUND - 1.0).abs() < DIGITS => " (pounds)",
+            ratio if (ratio / POUND - 1.0).abs() < DIGITS => " (as if it were in pounds)",
+            _ => "",
+        };
+        format!("another mass of `{link}`: {} kg instead of {} kg{unit}", shown(b.m), shown(a.m))
+    };
     if mass && alike(a.I, b.I) {
-        return Some(format!(
-            "{other} has another centre of mass of `{link}`: {} instead of {}",
-            vector(b.c),
-            vector(a.c)
-        ));
+        return Some(format!("{other} has {}", another_center()));
     }
     if center && alike(scaled(a.I, b.m / a.m), b.I) {
         let (m, n, ratio) = (shown(a.m), shown(b.m), shown(b.m / a.m));
@@ -130,8 +146,10 @@ fn forward(
         ));
     }
     if center && alike(a.I, b.I) {
-        let (m, n) = (shown(a.m), shown(b.m));
-        return Some(format!("{other} has another mass of `{link}`: {n} kg instead of {m} kg, with {one}'s moments"));
+        return Some(format!("{other} has {}, with {one}'s moments", another_mass()));
+    }
+    if alike(a.I, b.I) {
+        return Some(format!("{other} has {} and {}, with {one}'s moments", another_mass(), another_center()));
     }
     None
 }
@@ -220,6 +238,11 @@ fn of_moments([one, other]: [&str; 2], of: &str, a: Body, b: Body, axes: [Option
                 names[1], names[0]
             ));
         }
+    }
+    let is_dropped = |k: usize| y[k] == 0.0 && x[k] != 0.0;
+    if !differing.is_empty() && differing.iter().all(|&k| k > 2 && is_dropped(k)) {
+        let list = differing.iter().map(|&k| NAMES[k]).collect::<Vec<_>>().join(", ");
+        return Some(format!("{other} drops {list} of the {of}"));
     }
     // the axes of one file are only those of the eigenvectors
     if conjugate(a.I, b.I) {

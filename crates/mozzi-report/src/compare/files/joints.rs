@@ -28,7 +28,16 @@ pub fn causes(matched: &Matched, other: &str) -> Result<Vec<Cause>> {
             ("stiffness", joint.stiffness, there.stiffness, Property::Stiffness, Angle::Per),
             ("spring reference", joint.spring_reference, there.spring_reference, Property::SpringReference, Angle::Of),
         ];
-        for (what, x, y, make, angle) in numbers.into_iter().filter(|(_, x, y, ..)| moves && !same(*x, *y)) {
+        let [damping, friction] = [joint.damping, joint.friction];
+        let is_exchanged = same(damping, there.friction) && same(friction, there.damping) && !same(damping, friction);
+        if moves && is_exchanged {
+            let sentence = format!("{other} has damping and friction of `{}` exchanged", joint.name);
+            let change = Change::Joint(joint.name.clone(), Property::Losses([friction, damping]));
+            causes.push(Cause::new("damping", &joint.name, sentence, true, change));
+        }
+        let is_told = |what: &str| is_exchanged && ["damping", "friction"].contains(&what);
+        let numbers = numbers.into_iter().filter(|(what, ..)| !is_told(what));
+        for (what, x, y, make, angle) in numbers.filter(|(_, x, y, ..)| moves && !same(*x, *y)) {
             let unit = || reason(x, y, of_kind(joint, angle));
             let why = if what == "armature" { gear(x, y).or_else(unit) } else { unit() };
             let has_reason = why.is_some();
@@ -88,7 +97,12 @@ pub fn silent(a: &Description, b: &Description, names: &dyn Fn(&str) -> String, 
             ("lower limit", joint.limits.position.map(|p| p[0]), there.limits.position.map(|p| p[0]), Angle::Of),
             ("upper limit", joint.limits.position.map(|p| p[1]), there.limits.position.map(|p| p[1]), Angle::Of),
         ];
-        for (what, x, y, angle) in rates {
+        let [v, f, w, g] = [joint.limits.velocity, joint.limits.effort, there.limits.velocity, there.limits.effort];
+        let is_exchanged = v != f && v == g && f == w;
+        if is_exchanged {
+            add("limits", format!("{other} has the limits of velocity and effort of `{}` exchanged", joint.name), true);
+        }
+        for (what, x, y, angle) in rates.into_iter().skip(if is_exchanged { 2 } else { 0 }) {
             let subject = format!("{what} of `{}`", joint.name);
             match (x, y) {
                 (Some(x), None) => add("limits", format!("{subject} is dropped in {other}: it was {}", shown(x)), true),

@@ -3,7 +3,7 @@
 use crate::compare::Result;
 use crate::compare::constants::{Constants, freed};
 use mozzi::Description;
-use mozzi::model::description::{ConstraintKind, JointKind};
+use mozzi::model::description::{ConstraintKind, Joint, JointKind};
 
 /// Both robots with the same independent moving joints, under the first one's names.
 pub struct Matched {
@@ -75,6 +75,19 @@ pub fn matched(a: &Description, b: &Description) -> Result<Matched> {
 }
 
 impl Matched {
+    /// Two joints of which each moves, in the second file, the link that the other moves in the first.
+    pub fn exchanged(&self) -> Option<[String; 2]> {
+        let moves = |joint: &&Joint| joint.kind != JointKind::Fixed;
+        let child = |name: &str| self.b.joints.iter().find(|joint| joint.name == name).map(|joint| &joint.child);
+        let off: Vec<&Joint> = (self.a.joints.iter().filter(moves))
+            .filter(|joint| child(&joint.name).is_some_and(|there| *there != joint.child))
+            .collect();
+        off.iter().enumerate().find_map(|(k, one)| {
+            let is_twin = |two: &&&Joint| child(&one.name) == Some(&two.child) && child(&two.name) == Some(&one.child);
+            off[k + 1..].iter().find(is_twin).map(|two| [one.name.clone(), two.name.clone()])
+        })
+    }
+
     /// The second file's name of a link.
     pub fn link_there<'n>(&'n self, name: &'n str) -> &'n str {
         self.links.iter().find(|(here, _)| here == name).map_or(name, |(_, there)| there)

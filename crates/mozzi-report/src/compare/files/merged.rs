@@ -75,7 +75,27 @@ pub fn causes(
         change.extend(names.iter().skip(1).map(|name| (name.to_string(), SpatialInertia::zero())));
         causes.push(Cause::new("inertia", first, sentence, has_reason, Change::Inertia(change)));
     }
+    exchanged(&mut causes, robots, &files[1].name);
     Ok((causes, notes))
+}
+
+/// Two links, each with the inertia of the other, are one cause.
+fn exchanged(causes: &mut Vec<Cause>, robots: [&Description; 2], other: &str) {
+    let is_as = |here: &str, there: &str| same_body(&inertia(robots[0], here), &inertia(robots[1], there));
+    let links: Vec<String> = causes.iter().map(|cause| cause.name.clone()).collect();
+    for (k, one) in links.iter().enumerate() {
+        for two in links[k + 1..].iter().filter(|two| is_as(one, two) && is_as(two, one)) {
+            let of = |change: &Change| match change {
+                Change::Inertia(list) => list.clone(),
+                _ => Vec::new(),
+            };
+            let is_one = |cause: &&Cause| [one, two].contains(&&cause.name);
+            let change = causes.iter().filter(is_one).flat_map(|cause| of(&cause.change)).collect();
+            let sentence = format!("{other} has the inertias of `{one}` and `{two}` exchanged");
+            causes.retain(|cause| !is_one(&cause));
+            causes.push(Cause::new("inertia", one, sentence, true, Change::Inertia(change)));
+        }
+    }
 }
 
 fn inertia(robot: &Description, link: &str) -> SpatialInertia {
