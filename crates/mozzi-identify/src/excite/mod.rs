@@ -206,7 +206,7 @@ fn check(model: &Model, options: &ExciteOptions) -> Result<(), Error> {
         ("a limit of acceleration", &limits.acceleration),
         ("a limit of torque", &limits.torque),
     ] {
-        for (joint, x) in model.joint_names().zip(list).filter(|(_, x)| !(**x > 0.0)) {
+        if let Some((joint, x)) = model.joint_names().zip(list).find(|(_, x)| !(**x > 0.0)) {
             return wrong(option, format!("{x} for `{joint}`"), "a positive number");
         }
     }

@@ -104,7 +104,8 @@ fn boxes_distances_and_torques_hold_all_the_time() {
             loose.acceleration.iter_mut().for_each(|acceleration| *acceleration *= 1.01);
             loose.position.iter_mut().for_each(|[low, high]| (*low, *high) = (*low - 1e-3, *high + 1e-3));
             for Box3 { corners: [low, high], .. } in &mut loose.boxes {
-                (low.iter_mut().for_each(|x| *x -= 1e-3), high.iter_mut().for_each(|x| *x += 1e-3));
+                low.iter_mut().for_each(|x| *x -= 1e-3);
+                high.iter_mut().for_each(|x| *x += 1e-3);
             }
             loose.apart.iter_mut().for_each(|(a, _)| a.radius -= 1e-3);
             assert_eq!(loose.broken(&model, &at, tau.as_slice()).expect("frames"), None, "t = {k}/100 s");
