@@ -5,17 +5,23 @@ use crate::numbers::one_or_each;
 use crate::text::scalar;
 use mozzi::Model;
 
-/// The limits of a flag: one for all, one for each velocity, or `NAME=LIMIT,…` for some of them; "inf" for none. The
-/// robot's own without it. A limit above the robot's own is questioned.
-pub fn of_flag(model: &Model, flag: &str, text: Option<&str>, own: Vec<f64>, are_angles: &[bool]) -> Result<Vec<f64>> {
+/// The limits of a flag: one for all, one for each velocity, or `NAME=LIMIT,…` for some of them; "inf" for none. A
+/// limit above that of the robot's `file` is questioned.
+pub fn of_flag(
+    model: &Model,
+    flag: &str,
+    text: Option<&str>,
+    [default, file]: [&[f64]; 2],
+    are_angles: &[bool],
+) -> Result<Vec<f64>> {
     let read = |text: &str, are_angles: &[bool]| match text.trim() {
         "inf" => Ok(vec![f64::INFINITY; are_angles.len()]),
         text => one_or_each(flag, text, are_angles),
     };
     let found = match text {
-        None => return Ok(own),
+        None => return Ok(default.to_vec()),
         Some(text) if text.contains('=') => {
-            let (mut found, names) = (own.clone(), model.velocity_names().collect::<Vec<_>>());
+            let (mut found, names) = (default.to_vec(), model.velocity_names().collect::<Vec<_>>());
             for entry in text.split(',') {
                 let (name, limit) = entry.split_once('=').map_or((entry.trim(), None), |(a, b)| (a.trim(), Some(b)));
                 let (Some(k), Some(limit)) = (names.iter().position(|known| *known == name), limit) else {
@@ -31,9 +37,10 @@ pub fn of_flag(model: &Model, flag: &str, text: Option<&str>, own: Vec<f64>, are
         }
         Some(text) => read(text, are_angles)?,
     };
-    let above = model.velocity_names().zip(found.iter().zip(&own)).find(|(_, (x, own))| *x > *own);
-    if let Some((name, (x, own))) = above {
-        note(&format!("{flag} is {} for `{name}`, above the limit {} of the robot's file", scalar(*x), scalar(*own)));
+    let above = model.velocity_names().zip(found.iter().zip(file)).find(|(_, (x, of_file))| *x > *of_file);
+    if let Some((name, (x, of_file))) = above {
+        let (x, of_file) = (scalar(*x), scalar(*of_file));
+        note(&format!("{flag} is {x} for `{name}`, above the limit {of_file} of the robot's file"));
     }
     Ok(found)
 }

@@ -13,7 +13,7 @@ use crate::text::{Page, table};
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
-use mozzi_identify::excite::{Box3, Excitation, ExciteOptions, Goal, Sphere, excite};
+use mozzi_identify::excite::{self, Box3, Excitation, ExciteOptions, Goal, MotionLimits, Sphere, excite};
 use mozzi_identify::{Choice, Sensor};
 use serde_json::{Value, json};
 
@@ -128,15 +128,17 @@ impl ExciteArguments {
     fn options(&self, model: &Model) -> Result<ExciteOptions> {
         let mut options = ExciteOptions::new(model, number("--duration", &self.duration)?);
         let (rates, none) = (angles::of_velocities(model), vec![false; model.n()]);
-        let list = |flag: &str, text: &Option<String>, own: &mut Vec<f64>, are_angles: &[bool]| -> Result<()> {
-            *own = limits::of_flag(model, flag, text.as_deref(), core::mem::take(own), are_angles)?;
-            Ok(())
+        let file = mozzi_motion::trajectories::Limits::of(model);
+        let of_flag = |flag: &str, text: &Option<String>, both: [&[f64]; 2], are_angles: &[bool]| {
+            limits::of_flag(model, flag, text.as_deref(), both, are_angles)
         };
-        list("--max-velocity", &self.max_velocity, &mut options.limits.velocity, &rates)?;
-        list("--max-acceleration", &self.max_acceleration, &mut options.limits.acceleration, &rates)?;
+        let MotionLimits { velocity, acceleration, torque, .. } = &mut options.limits;
+        *velocity = of_flag("--max-velocity", &self.max_velocity, [velocity, &file.velocity], &rates)?;
+        let both = [&acceleration[..], &file.acceleration];
+        *acceleration = of_flag("--max-acceleration", &self.max_acceleration, both, &rates)?;
         if self.max_torque.is_some() {
-            list("--max-torque", &self.max_torque, &mut options.limits.torque, &none)?;
-            options.noise = options.limits.torque.iter().map(|t| 0.01 * t).collect();
+            *torque = of_flag("--max-torque", &self.max_torque, [torque, &file.torque], &none)?;
+            options.noise = excite::noise(torque);
         }
         if let Some(text) = &self.noise {
             options.noise = one_or_each("--noise", text, &none)?;

@@ -121,7 +121,8 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     let told = times.iter().enumerate().map(|(k, &t)| of(t).inspect(|_| progress.at(k + 1)));
     let rows = told.collect::<Result<Vec<Row>>>()?;
     drop(progress);
-    let judged = rows.iter().cloned().map(Ok).chain(between.map(of)).collect::<Result<Vec<Row>>>()?;
+    let between = between.map(of).collect::<Result<Vec<Row>>>()?;
+    let judged: Vec<&Row> = rows.iter().chain(&between).collect();
     if let Some((row, name)) = judged.iter().find_map(|row| Some((row, row.not_finite()?))) {
         return Err(Failure::wrong(format!(
             "{name} at t = {} s is not a finite number: the motion is too large or too fast",
@@ -146,7 +147,7 @@ impl TrajectoryArguments {
         let robots = Limits::of(model);
         let (rates, none) = (angles::of_velocities(model), vec![false; model.n()]);
         let list = |flag: &str, text: &Option<String>, own: Vec<f64>, are_angles: &[bool]| {
-            limits::of_flag(model, flag, text.as_deref(), own, are_angles)
+            limits::of_flag(model, flag, text.as_deref(), [&own, &own], are_angles)
         };
         Ok(Limits {
             velocity: list("--max-velocity", &self.max_velocity, robots.velocity, &rates)?,
@@ -252,7 +253,6 @@ impl TrajectoryArguments {
 }
 
 /// A moment of the motion.
-#[derive(Clone)]
 struct Row {
     t: f64,
     theta: Vec<f64>,
@@ -287,7 +287,7 @@ fn columns(model: &Model, rows: &[Row]) -> Columns {
 
 /// A message for each exceeded limit: the robot's position limits, and the given limits of velocity, acceleration and
 /// torque.
-fn beyond(model: &Model, rows: &[Row], limits: &Limits) -> Vec<String> {
+fn beyond(model: &Model, rows: &[&Row], limits: &Limits) -> Vec<String> {
     let mut told = Vec::new();
     let mut say = |what: &str, name: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
         let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
@@ -333,7 +333,7 @@ fn object(model: &Model, rows: &[Row], beyond: Vec<String>) -> Value {
 }
 
 /// Largest values are those of the `judged` moments.
-fn page(model: &Model, rows: &[Row], judged: &[Row], limits: &Limits, file: Option<&str>) -> String {
+fn page(model: &Model, rows: &[Row], judged: &[&Row], limits: &Limits, file: Option<&str>) -> String {
     let mut page = Page::default();
     let duration = rows.last().map_or(0.0, |row| row.t);
     page.line(format!("{}: a motion of {} s", model.description().name, scalar(duration)));
@@ -353,7 +353,7 @@ fn page(model: &Model, rows: &[Row], judged: &[Row], limits: &Limits, file: Opti
     page.blank().lines(&table(&cells, "r")).blank();
     // the largest value of each joint, and of its limit
     let largest = |pick: fn(&Row) -> &Vec<f64>| {
-        let all = judged.iter().map(pick);
+        let all = judged.iter().map(|row| pick(row));
         all.fold(vec![0.0_f64; model.n()], |m, row| m.iter().zip(row).map(|(m, x)| m.max(x.abs())).collect())
     };
     let units = Units::of(model);

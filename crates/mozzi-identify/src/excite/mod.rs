@@ -48,7 +48,7 @@ impl ExciteOptions {
     /// A motion of this duration for a robot: its own limits, 1 % of each effort limit as noise.
     pub fn new(model: &Model, duration: f64) -> Self {
         let limits = MotionLimits::of(model);
-        let noise = limits.torque.iter().map(|t| if t.is_finite() { 0.01 * t } else { 0.1 }).collect();
+        let noise = noise(&limits.torque);
         ExciteOptions {
             duration,
             harmonics: 5,
@@ -62,6 +62,11 @@ impl ExciteOptions {
             starts: 2,
         }
     }
+}
+
+/// The usual noise of forces: 1 % of each torque limit, 0.1 N m or N if there is none.
+pub fn noise(torque: &[f64]) -> Vec<f64> {
+    torque.iter().map(|t| if t.is_finite() { 0.01 * t } else { 0.1 }).collect()
 }
 
 /// A motion and what it will determine.
