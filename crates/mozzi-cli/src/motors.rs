@@ -181,13 +181,13 @@ impl MotorArguments {
             _ => "controls of 0".to_string(),
         };
         let weights = match found.compensated.len() {
-            0 => String::new(),
-            1 => ", and the weight of 1 link is compensated".to_string(),
-            many => format!(", and the weights of {many} links are compensated"),
+            0 => None,
+            1 => Some("the weight of 1 link is compensated".to_string()),
+            many => Some(format!("the weights of {many} links are compensated")),
         };
-        failure::note(&format!(
-            "the file's actuators ({count}) drive the robot with {with}{weights}; --torque zero leaves them out"
-        ));
+        let motors = (count > 0).then(|| format!("the file's actuators ({count}) drive the robot with {with}"));
+        let told = motors.into_iter().chain(weights).collect::<Vec<_>>().join(", and ");
+        failure::note(&format!("{told}; --torque zero leaves this out"));
         Ok(Some(Actuators(actuated)))
     }
 

@@ -109,14 +109,18 @@ impl fmt::Display for Error {
                 "constraint `{constraint}` cannot be closed at t = {time} s: {residual:.3e} rad or m are left; the step may be too \
                  long, or the mechanism at the end of its reach"
             ),
-            Error::Diverged { quantity, joint, value, step, time, step_size } => write!(
-                f,
-                "the simulation diverged: {quantity} of joint `{joint}` is {} in step {step}, at t = {} s, with steps of {} s; \
-                 a smaller step may help",
-                short(*value),
-                short(*time),
-                short(*step_size)
-            ),
+            Error::Diverged { quantity, joint, value, step, time, step_size } => {
+                write!(f, "the simulation diverged: {quantity} of ")?;
+                match joint.as_str() {
+                    "" => write!(f, "the base")?,
+                    joint => write!(f, "joint `{joint}`")?,
+                }
+                let [value, time, step_size] = [*value, *time, *step_size].map(short);
+                write!(
+                    f,
+                    " is {value} in step {step}, at t = {time} s, with steps of {step_size} s; a smaller step may help"
+                )
+            }
             Error::Stalled { time, joint, cause } => {
                 write!(f, "the simulation does not advance at t = {time} s, because of joint `{joint}`: {cause}")
             }
