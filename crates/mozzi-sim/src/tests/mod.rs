@@ -3,6 +3,7 @@
 mod against_stops;
 mod balls;
 mod constraints;
+mod courses;
 mod free_base;
 pub mod robots;
 mod simulate;
