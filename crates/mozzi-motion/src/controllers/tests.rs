@@ -238,3 +238,31 @@ fn what_makes_no_sense_is_refused() {
     let error = control.torque(0.0, &[0.0; 6], &[0.0; 6], &mut [0.0; 6]).expect_err("seven");
     assert!(error.to_string().contains("7 entries, expected 6"), "{error}");
 }
+
+#[test]
+fn a_motor_moves_a_loop_to_its_goal() {
+    let mut description = mozzi::testing::four_bar().description().clone();
+    description.motors = Some(vec!["crank_pivot".to_string()]);
+    let model = description.build().expect("sound");
+    let closed = |crank: f64| model.assemble(&[crank, -0.6, 1.6], &["crank_pivot"]).expect("closes");
+    let (start, goal) = (closed(1.0), closed(1.4));
+    let omega = 8.0;
+    let gains = Gains::critical(3, omega);
+    let control = ComputedTorque::new(&model, Hold::new(&goal, 3), gains).expect("fine");
+    let options = Options::new(2.0, 2000);
+    let moved = mozzi_sim::simulate(&model, &start, &[0.0; 3], control, &options).expect("a motion");
+    // only the crank has a motor
+    for row in moved.samples() {
+        assert!(row.tau[1].abs() < 1e-9 && row.tau[2].abs() < 1e-9, "{:?}", row.tau);
+    }
+    let e = |theta: &[f64]| goal.iter().zip(theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(e(moved.last().theta) < 1e-4 && e(&start) > 0.1, "{}", e(moved.last().theta));
+    let gains = Gains { p: vec![40.0; 3], d: vec![6.0; 3] };
+    let mut control = PdGravity::new(&model, Hold::new(&goal, 3), gains).expect("fine");
+    let (mut stiffness, mut damping) = ([0.0; 3], [0.0; 3]);
+    control.gains(&mut stiffness, &mut damping);
+    assert_eq!((stiffness, damping), ([40.0, 0.0, 0.0], [6.0, 0.0, 0.0]));
+    let settled =
+        mozzi_sim::simulate(&model, &start, &[0.0; 3], &mut control, &Options::new(4.0, 4000)).expect("a motion");
+    assert!(e(settled.last().theta) < 1e-3, "{:?} {goal:?}", settled.last().theta);
+}
