@@ -44,6 +44,39 @@ fn arguments_that_no_file_reads_are_told() {
 }
 
 #[test]
+fn packages_of_one_name_are_told() {
+    let folder = folder("xacro-packages");
+    let make = |at: &str, mass: &str| {
+        let package = folder.join(at);
+        std::fs::create_dir_all(&package).expect("a folder");
+        file(&package, "package.xml", "<package><name>rods_of_two</name></package>");
+        file(
+            &package,
+            "mass.xacro",
+            &format!("<robot xmlns:xacro='http://ros.org/xacro'><xacro:property name='m' value='{mass}'/></robot>"),
+        );
+    };
+    make("a/rods_of_two", "1");
+    let robot = file(
+        &folder,
+        "arm.xacro",
+        "<robot name='arm' xmlns:xacro='http://ros.org/xacro'><xacro:include filename='$(find rods_of_two)/mass.xacro'/>\
+         <link name='l'><inertial><mass value='${m}'/></inertial></link></robot>",
+    );
+    let run = |more: &[&str]| {
+        let output = mozzi(&[&["xacro", &robot][..], more].concat());
+        [output.stdout, output.stderr].map(|text| String::from_utf8(text).expect("text"))
+    };
+    let [text, said] = run(&[]);
+    assert!(text.contains("value=\"1\"") && !said.contains("rods_of_two"), "{text} {said}");
+    make("b/rods_of_two", "22");
+    let [text, said] = run(&[]);
+    assert!(text.contains("value=\"1\"") && said.contains("the package `rods_of_two` is in "), "{text} {said}");
+    let [text, said] = run(&[&format!("--package=rods_of_two={}", folder.join("b/rods_of_two").display())]);
+    assert!(text.contains("value=\"22\"") && !said.contains("the package"), "{text} {said}");
+}
+
+#[test]
 fn errors_point_into_the_files_that_the_user_wrote() {
     let folder = folder("xacro-errors");
     let (robot, package) = arm(&folder);

@@ -19,17 +19,24 @@ impl Expander<'_> {
         }
         let is_plain = !name.contains(['/', '\\']) && !name.starts_with('.');
         let found = Some(name).filter(|_| is_plain).and_then(|name| installed(name).or_else(|| self.nearby(name)));
-        match found {
-            Some(folder) => Ok(folder.to_string_lossy().into_owned()),
-            None => Err(Fault::new(format!(
+        match found.unwrap_or_default().as_slice() {
+            [folder] => Ok(folder.to_string_lossy().into_owned()),
+            [folder, another, ..] => {
+                let (one, two) = (folder.display(), another.display());
+                self.warn(format!(
+                    "the package `{name}` is in {one} and in {two}; the first is taken, `--package {name}=FOLDER` names another"
+                ));
+                Ok(folder.to_string_lossy().into_owned())
+            }
+            [] => Err(Fault::new(format!(
                 "the package `{name}` was not found in AMENT_PREFIX_PATH, CMAKE_PREFIX_PATH, ROS_PACKAGE_PATH, or the \
                  folders around the file; `--package {name}=FOLDER` names its folder"
             ))),
         }
     }
 
-    /// A folder around the file, or a sibling of such a folder.
-    fn nearby(&self, name: &str) -> Option<PathBuf> {
+    /// A folder around the file, or siblings of such a folder.
+    fn nearby(&self, name: &str) -> Option<Vec<PathBuf>> {
         let open = self.open.borrow();
         open.iter().rev().find_map(|file| {
             let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -37,7 +44,7 @@ impl Expander<'_> {
             folder.ancestors().find_map(|above| {
                 let is_it = above.file_name().is_some_and(|own| own == name) || has_name(above, name);
                 if is_it {
-                    return Some(above.to_path_buf());
+                    return Some(vec![above.to_path_buf()]);
                 }
                 in_folder(above, name)
             })
@@ -46,29 +53,29 @@ impl Expander<'_> {
 }
 
 /// Searches the paths that ROS lists.
-fn installed(name: &str) -> Option<PathBuf> {
+fn installed(name: &str) -> Option<Vec<PathBuf>> {
     let listed = |variable: &str| {
         let Some(list) = std::env::var_os(variable) else { return Vec::new() };
         std::env::split_paths(&list).filter(|folder| !folder.as_os_str().is_empty()).collect()
     };
     let share = |folder: PathBuf| Some(folder.join("share").join(name)).filter(|folder| folder.is_dir());
     let prefixes = listed("AMENT_PREFIX_PATH").into_iter().chain(listed("CMAKE_PREFIX_PATH"));
-    let of_prefix = prefixes.filter_map(share).next();
+    let of_prefix = prefixes.filter_map(share).next().map(|folder| vec![folder]);
     of_prefix.or_else(|| {
         listed("ROS_PACKAGE_PATH").into_iter().find_map(|folder| {
             let is_it = folder.file_name().is_some_and(|own| own == name) && folder.is_dir() || has_name(&folder, name);
-            if is_it { Some(folder) } else { in_folder(&folder, name) }
+            if is_it { Some(vec![folder]) } else { in_folder(&folder, name) }
         })
     })
 }
 
-/// A folder of this name, or a folder with a package.xml of this name, one or two levels down.
-fn in_folder(folder: &Path, name: &str) -> Option<PathBuf> {
+/// The folder of this name, else the folders with a package.xml of this name, else those one level farther down.
+fn in_folder(folder: &Path, name: &str) -> Option<Vec<PathBuf>> {
     // the root of the file system holds no packages
     folder.parent()?;
     let direct = folder.join(name);
     if direct.is_dir() {
-        return Some(direct);
+        return Some(vec![direct]);
     }
     let folders = |folder: &Path| {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_ENTRIES);
@@ -77,9 +84,12 @@ fn in_folder(folder: &Path, name: &str) -> Option<PathBuf> {
         folders
     };
     let beside = folders(folder);
-    let renamed = beside.iter().find(|folder| has_name(folder, name)).cloned();
-    // a repository of several packages next to this one
-    renamed.or_else(|| beside.iter().map(|folder| folder.join(name)).find(|inner| inner.join("package.xml").is_file()))
+    let some = |found: Vec<PathBuf>| Some(found).filter(|found| !found.is_empty());
+    some(beside.iter().filter(|folder| has_name(folder, name)).cloned().collect()).or_else(|| {
+        // a repository of several packages next to this one
+        let inner = beside.iter().map(|folder| folder.join(name));
+        some(inner.filter(|inner| inner.join("package.xml").is_file()).collect())
+    })
 }
 
 /// True if the folder's package.xml has this name.
