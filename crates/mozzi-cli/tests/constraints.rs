@@ -91,8 +91,36 @@ fn inverse_kinematics_and_identification_refuse_loops() {
         assert!(code == 1 && why.contains("with 3 constraint rows") && why.contains("without constraints"), "{why}");
     };
     refused(&["ik", &robot, "--end-effector", "s", "--position", "0.3,0,-0.3"]);
+    let (_, why) = complaint(&["trajectory", &robot, "--to", "0.3,0.2", "--time", "1"]);
+    assert!(why.contains("which a path of its joints does not keep"), "{why}");
     refused(&["excite", &robot, "--duration", "2", "--max-velocity", "1", "--max-acceleration", "1"]);
     let rows: String = (0..30).map(|k| format!("{k},0.{k},0.1,1,2\n")).collect();
     let log = file(&folder, "log.csv", &format!("t,theta_1,theta_2,tau_1,tau_2\n{rows}"));
     refused(&["identify", &robot, &log]);
+}
+
+/// Drake's element has no name: what URDF and SDFormat can say is kept, the rest and lost names are told.
+#[test]
+fn points_of_two_links_are_kept_by_every_format() {
+    let folder = folder("constraints-drake");
+    let robot = r#"<robot name="bar" xmlns:drake="https://drake.mit.edu"><link name="base"/><link name="a"><inertial>
+        <mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+        <link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+        </link><joint name="j" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 1 0"/></joint>
+        <joint name="k" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0.3 0 0"/>
+        <axis xyz="0 1 0"/></joint></robot>"#;
+    let robot = file(&folder, "bar.urdf", robot);
+    let loops = r#"{"constraints": [
+        {"name": "rod", "kind": "distance", "length": 0.5, "a": {"frame": "base"}, "b": {"frame": "b"}},
+        {"name": "pin", "kind": "point", "a": {"frame": "base", "xyz": [0.6, 0, 0]}, "b": {"frame": "b", "xyz": [0.3, 0, 0]}}]}"#;
+    let loops = file(&folder, "loops.json", loops);
+    for ending in ["urdf", "sdf"] {
+        let out = folder.join(format!("out.{ending}")).display().to_string();
+        let said = common::mozzi(&["convert", &robot, &out, "--constraints", &loops]);
+        let said = String::from_utf8(said.stderr).expect("text");
+        let text = std::fs::read_to_string(&out).expect("written");
+        assert_eq!(text.matches("<drake:ball_constraint>").count(), 1, "{text}");
+        assert!(said.contains("`rod`") && said.contains("the name of constraint `pin`"), "{said}");
+        assert!(common::text(&["info", &out]).contains("ball_constraint0"));
+    }
 }

@@ -173,7 +173,7 @@ fn doubtful_motions_are_questioned() {
     }
     let told = said(&[&WAY[..], &["--max-velocity", "180", "--max-acceleration", "inf"]].concat());
     assert!(told.contains("--max-velocity is 180 for `shoulder_pan_joint`, above the limit 3.14"), "{told}");
-    let some = ["--max-velocity", "elbow_joint=0.5", "--max-acceleration", "1", "--json"];
+    let some = ["--max-velocity", "elbow_joint=0.5", "--max-acceleration", "1"];
     let dtheta = rows(&json(&[&WAY[..], &some].concat())["dtheta"]);
     let largest = |j: usize| dtheta.iter().map(|row| row[j].abs()).fold(0.0, f64::max);
     assert!(largest(2) <= 0.5 + 1e-9 && largest(0) > 0.5, "{} {}", largest(2), largest(0));

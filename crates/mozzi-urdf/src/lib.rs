@@ -82,7 +82,7 @@ pub use report::why::why;
 pub use settings::{Policy, Settings};
 pub use text::expansion::{expanded, expanded_with_warnings, taken_from_host};
 pub use urdf::expressible::expressible;
-pub use urdf::write::{NotUrdf, write};
+pub use urdf::write::{NotUrdf, only_ball_constraints, write};
 pub use written::{NotWritten, Written};
 
 use mozzi::{Description, Model, SO3};

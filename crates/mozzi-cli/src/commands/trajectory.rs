@@ -15,6 +15,7 @@ use crate::tables::format::Format;
 use crate::tables::{motion, read as table_file};
 use crate::text::{Decimals, Page, about, scalar, table};
 use clap::{Args, ValueEnum};
+use mozzi::model::Bounds;
 use mozzi::{Model, SE3};
 use mozzi_motion::Goal;
 use mozzi_motion::trajectories::{
@@ -102,6 +103,13 @@ const PLACES: usize = 500;
 pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let model = arguments.robot.load_at(|model| positions("--from", arguments.from.as_deref(), model))?;
+    if model.constraint_rows() > 0 {
+        let names = model.constraints().iter().map(|one| format!("`{}`", one.name)).collect::<Vec<_>>().join(", ");
+        return Err(Failure::wrong(format!(
+            "trajectory: the robot has the constraints {names}, which a path of its joints does not keep; expected a robot \
+             without constraints"
+        )));
+    }
     let limits = arguments.limits(&model)?;
     let motion = arguments.motion(&model, &limits).map_err(|failure| match failure {
         Failure::Wrong(sentence) if sentence.starts_with("nothing limits the speed") => {
@@ -300,10 +308,9 @@ fn beyond(model: &Model, rows: &[&Row], limits: &Limits) -> Vec<String> {
         }
     };
     let names: Vec<&str> = model.velocity_names().collect();
-    for (joint, place) in model.joints().zip(model.places()) {
-        if let Some(limits) = joint.limits.position {
-            say("joint", &joint.name, &|row| place.bounded_value(&rows[row].theta), limits);
-        }
+    let bounds = Bounds::of(model);
+    for ((joint, range), place) in model.joint_names().zip(&bounds.joints).zip(model.places()) {
+        say("joint", joint, &|row| place.bounded_value(&rows[row].theta), *range);
         for v in place.velocities() {
             for (what, asked, limit) in [
                 ("velocity", &(|row: usize| rows[row].dtheta[v]) as &dyn Fn(usize) -> f64, limits.velocity[v]),

@@ -23,12 +23,19 @@ impl Limits {
     }
 
     /// The limits of velocity, acceleration and effort of the robot's description; a ball's apply to each of its three
-    /// velocities. Of the formats, URDF 1.2 and JSON have limits of acceleration.
+    /// velocities, those of a mimic joint's motion to its source. Of the formats, URDF 1.2 and JSON have limits of acceleration.
     pub fn of(model: &Model) -> Self {
         let mut limits = Limits::none(model);
+        for (joint, source) in model.moving_joints().zip(model.sources()) {
+            let counts = |limit: &f64| joint.mimic.is_none() || *limit > 0.0; // 0 is written where none is meant
+            let of_source =
+                |limit: Option<f64>| limit.filter(counts).map_or(f64::INFINITY, |limit| limit / source.ratio.abs());
+            for j in model.places()[source.joint].velocities() {
+                limits.velocity[j] = limits.velocity[j].min(of_source(joint.limits.velocity));
+                limits.acceleration[j] = limits.acceleration[j].min(of_source(joint.limits.acceleration));
+            }
+        }
         for (place, joint) in model.places().iter().zip(model.joints()) {
-            limits.velocity[place.velocities()].fill(joint.limits.velocity.unwrap_or(f64::INFINITY));
-            limits.acceleration[place.velocities()].fill(joint.limits.acceleration.unwrap_or(f64::INFINITY));
             limits.torque[place.velocities()].fill(joint.limits.effort.unwrap_or(f64::INFINITY));
         }
         limits

@@ -236,6 +236,19 @@ fn a_pendulum_swings_up_as_its_energy_says() {
     assert!(joint == "pivot" && *limit == 6.0 && *needed > 6.0 && *s > 0.2 && *s < 0.4, "{weak}");
 }
 
+/// A mimic joint's limits, through its ratio, are its source's.
+#[test]
+fn limits_of_mimic_joints_count() {
+    let mut robot = robot("panda").description().clone();
+    let finger = robot.joints.iter_mut().find(|joint| joint.mimic.is_some()).expect("a mimic joint");
+    (finger.limits.velocity, finger.limits.acceleration) = (Some(0.1), Some(3.0));
+    finger.mimic.as_mut().expect("one").ratio = -2.0;
+    let model = robot.build().expect("sound");
+    let limits = Limits::of(&model);
+    let source = model.joint_names().position(|name| name == "panda_finger_joint1").expect("there");
+    assert_eq!((limits.velocity[source], limits.acceleration[source]), (0.05, 1.5));
+}
+
 #[test]
 fn the_fastest_way_keeps_all_limits_and_leaves_none_unused() {
     let ur5 = robot("ur5");

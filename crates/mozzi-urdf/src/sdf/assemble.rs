@@ -9,6 +9,7 @@ use crate::report::places::{Place, Places};
 use crate::text::context::Context;
 use crate::text::element::{Element, Value};
 use crate::urdf::vocabulary::shown;
+use crate::urdf::write::ball_name;
 use crate::urdf::{axis, series};
 use core::f64::consts::TAU;
 use mozzi::model::description::{
@@ -133,7 +134,7 @@ impl Reader<'_> {
                 })
             });
             if let [Some(a), Some(b)] = anchors {
-                description.constraints.push(Constraint::point(format!("ball_constraint{i}"), a, b));
+                description.constraints.push(Constraint::point(ball_name(i), a, b));
                 places.constraints.push(closure.place);
             }
         }

@@ -1,7 +1,7 @@
 //! The properties of a robot that SDFormat cannot express.
 
 use super::base::{base_link, has_world, start_pose};
-use crate::urdf::write::ball_constraint;
+use crate::urdf::write::constraint_losses;
 use crate::written::names_of;
 use mozzi::model::description::{FreeJoint, JointKind};
 use mozzi::{Base, Description};
@@ -39,8 +39,7 @@ pub(super) fn of(d: &Description) -> Vec<String> {
         }
     }
     losses.extend(d.rotors.iter().map(|rotor| format!("rotor `{}`: M differs", rotor.name)));
-    let lost = d.constraints.iter().enumerate().filter(|(i, one)| ball_constraint(d, *i, one).is_none());
-    losses.extend(lost.map(|(_, one)| format!("constraint `{}`: the robot is a tree", one.name)));
+    losses.extend(constraint_losses(d));
     if d.motors.is_some() {
         losses.push("the list of motors".to_string());
     }

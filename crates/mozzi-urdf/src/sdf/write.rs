@@ -95,9 +95,9 @@ fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
         pose_element(text, "      ", frame.T, None)?;
         text.write_str("    </frame>\n")?;
     }
-    for (i, each) in d.constraints.iter().enumerate() {
+    for each in &d.constraints {
         const TAG: &str = "drake:ball_constraint";
-        let Some(ends) = ball_constraint(d, i, each) else { continue };
+        let Some(ends) = ball_constraint(d, each) else { continue };
         writeln!(text, "    <{TAG}>")?;
         for ([body, point], (link, p)) in [["A", "p_AP"], ["B", "p_BQ"]].into_iter().zip(ends) {
             writeln!(text, "      <{TAG}_body_{body}>{}</{TAG}_body_{body}>", names.link(link))?;

@@ -8,6 +8,7 @@ use crate::text::element::Element;
 use crate::urdf::axis;
 use crate::urdf::extension;
 use crate::urdf::vocabulary::shown;
+use crate::urdf::write::ball_name;
 use core::f64::consts::TAU;
 use mozzi::model::description::{Anchor, Constraint};
 use mozzi::{Description, SE3, ScrewAxis, Vec3};
@@ -62,7 +63,7 @@ pub(crate) fn ball_constraint(element: &Element, description: &mut Description, 
     const PREFIX: &str = "drake:ball_constraint";
     let mut place = Place::new(element.span());
     let number = description.constraints.len();
-    let name = format!("ball_constraint{number}");
+    let name = ball_name(number);
     let element = element.called(format!("{} `{name}`", element.subject));
     let part = |suffix: &str, cx: &mut Context| {
         let found = child(&element, &format!("{PREFIX}_{suffix}"));

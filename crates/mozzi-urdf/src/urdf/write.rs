@@ -82,8 +82,7 @@ fn not_urdf(d: &Description) -> Vec<String> {
     reasons.extend(names.filter(is_lost).map(|name| format!("the name {name:?}")));
     reasons.extend(d.frames.iter().map(|frame| format!("frame `{}`", frame.name)));
     reasons.extend(d.rotors.iter().map(|rotor| format!("rotor `{}`", rotor.name)));
-    let lost = d.constraints.iter().enumerate().filter(|(i, one)| ball_constraint(d, *i, one).is_none());
-    reasons.extend(lost.map(|(_, one)| format!("constraint `{}`", one.name)));
+    reasons.extend(constraint_losses(d));
     if d.motors.is_some() {
         reasons.push("the list of motors".to_string());
     }
@@ -124,9 +123,9 @@ fn robot(text: &mut String, d: &Description) -> fmt::Result {
     for each in &d.joints {
         joint(text, each)?;
     }
-    for (i, each) in d.constraints.iter().enumerate() {
+    for each in &d.constraints {
         const TAG: &str = "drake:ball_constraint";
-        let Some(ends) = ball_constraint(d, i, each) else { continue }; // it was refused
+        let Some(ends) = ball_constraint(d, each) else { continue }; // it was refused
         writeln!(text, "  <{TAG}>")?;
         for ([body, point], (link, p)) in [["A", "p_AP"], ["B", "p_BQ"]].into_iter().zip(ends) {
             writeln!(text, "    <{TAG}_body_{body} name=\"{}\"/>", escaped(link))?;
@@ -137,20 +136,55 @@ fn robot(text: &mut String, d: &Description) -> fmt::Result {
     text.write_str("</robot>\n")
 }
 
-/// The links and points of a constraint that Drake's element describes exactly, its name included.
-pub(crate) fn ball_constraint<'d>(
-    d: &Description,
-    i: usize,
-    constraint: &'d Constraint,
-) -> Option<[(&'d str, Vec3); 2]> {
+/// The constraints that are lost, or whose names are: Drake's element has none.
+pub(crate) fn constraint_losses(d: &Description) -> Vec<String> {
+    let (mut lost, mut count) = (Vec::new(), 0);
+    for each in &d.constraints {
+        if ball_constraint(d, each).is_none() {
+            lost.push(format!("constraint `{}`", each.name));
+            continue;
+        }
+        if each.name != ball_name(count) {
+            lost.push(format!("the name of constraint `{}`, which is read as `{}`", each.name, ball_name(count)));
+        }
+        count += 1;
+    }
+    lost
+}
+
+/// Leaves out the constraints that Drake's element cannot describe, and gives the others the names that they are read
+/// by. Returns the names of the first, and old and new names of the others.
+pub fn only_ball_constraints(d: &mut Description) -> (Vec<String>, Vec<[String; 2]>) {
+    let all = core::mem::take(&mut d.constraints);
+    let (mut dropped, mut renamed) = (Vec::new(), Vec::new());
+    for mut each in all {
+        if ball_constraint(d, &each).is_none() {
+            dropped.push(each.name);
+            continue;
+        }
+        let name = ball_name(d.constraints.len());
+        if each.name != name {
+            renamed.push([core::mem::replace(&mut each.name, name.clone()), name]);
+        }
+        d.constraints.push(each);
+    }
+    (dropped, renamed)
+}
+
+/// The name of the k-th of Drake's elements.
+pub(crate) fn ball_name(k: usize) -> String {
+    format!("ball_constraint{k}")
+}
+
+/// The links and points of a constraint that Drake's element describes.
+pub(crate) fn ball_constraint<'d>(d: &Description, constraint: &'d Constraint) -> Option<[(&'d str, Vec3); 2]> {
     let ConstraintKind::Frames { a, b, closure: Closure::Point } = &constraint.kind else { return None };
     let end = |anchor: &'d Anchor| {
         let name = anchor.frame.as_deref()?;
         let is_link = d.links.iter().any(|link| link.name == name);
         (is_link && anchor.T.R == SE3::identity().R).then_some((name, anchor.T.p))
     };
-    let ends = [end(a)?, end(b)?];
-    (constraint.name == format!("ball_constraint{i}")).then_some(ends)
+    Some([end(a)?, end(b)?])
 }
 
 /// The name, or a similar one that is not taken.

@@ -2,7 +2,7 @@
 
 use super::rows::{Rows, columns, least_squares};
 use crate::model::description::JointKind;
-use crate::model::{Bounds, Error, Freedom, Model};
+use crate::model::{Bounds, Error, Freedom, Model, Tie};
 use crate::model::{difference, integrate};
 use crate::random::Random;
 use alloc::string::String;
@@ -33,6 +33,7 @@ impl Model<f64> {
     pub fn assemble(&self, guess: &[f64], hold: &[&str]) -> Result<Vec<f64>, Error> {
         self.check_configuration(guess)?;
         let free = self.free_velocities(hold)?;
+        self.check_rows(&self.constraint_rows_at(guess, &alloc::vec![0.0; self.n()]))?;
         let (mut random, mut best, mut beyond) = (Random(1), None::<(f64, Vec<f64>)>, None);
         let mut nearest = None::<(f64, Vec<f64>)>;
         for start in 0..=STARTS + 1 {
@@ -75,9 +76,20 @@ impl Model<f64> {
         }
         let (residual, theta) = best.unwrap_or((f64::NAN, guess.to_vec()));
         let phi = self.constraint_rows_at(&theta, &alloc::vec![0.0; self.n()]).phi;
-        let row = phi.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map_or(0, |(row, _)| row);
+        let gap = |tie: &Tie<f64>| phi.rows(tie.first, tie.kind.rows()).norm();
+        let worst = self.ties.list.iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let (row, residual) = worst.map_or((0, residual), |tie| (tie.first, gap(tie)));
         let what = if hold.is_empty() { "no position" } else { "no position with the held joints" };
         Err(Error::Unreachable { constraint: self.constraint_of_row(row), residual, what })
+    }
+
+    /// Refuses rows that are not finite.
+    fn check_rows(&self, Rows { A, phi, .. }: &Rows) -> Result<(), Error> {
+        let is_finite = |row: &usize| phi[*row].is_finite() && A.row(*row).iter().all(|x| x.is_finite());
+        let Some(row) = (0..phi.len()).find(|row| !is_finite(row)) else { return Ok(()) };
+        let found = alloc::format!("one at which constraint `{}` is undefined", self.constraint_of_row(row));
+        let expected = "another: the axis of a wheel is not normal to its plane, and numbers are not too large";
+        Err(Error::BadArgument { what: "the position", found, expected })
     }
 
     /// Closes the loops with all joints free, then brings those that are not free to the guess, in steps.
@@ -155,7 +167,7 @@ impl Model<f64> {
             let mut next = theta.clone();
             integrate(self, &mut next, &change, 1.0);
             let rows = self.constraint_rows_at(&next, &at_rest);
-            if rows.phi.norm() < last.phi.norm() {
+            if rows.phi.norm() < last.phi.norm() && self.check_rows(&rows).is_ok() {
                 (*theta, last, damping) = (next, rows, (damping * 0.1_f64).max(1e-14));
             } else if size < CLOSED || damping > 1e8 {
                 break;
@@ -173,7 +185,9 @@ impl Model<f64> {
     /// velocities.
     pub fn assemble_velocities(&self, theta: &[f64], guess: &[f64], hold: &[&str]) -> Result<Vec<f64>, Error> {
         self.check_lengths(theta, [("dtheta", guess)])?;
-        let Rows { A, .. } = self.constraint_rows_at(theta, guess);
+        let rows = self.constraint_rows_at(theta, guess);
+        self.check_rows(&rows)?;
+        let A = rows.A;
         let target = DVector::zeros(A.nrows());
         self.nearest(A, target, guess, hold, "no velocity with the held joints")
     }
@@ -191,7 +205,9 @@ impl Model<f64> {
         hold: &[&str],
     ) -> Result<Vec<f64>, Error> {
         self.check_lengths(theta, [("dtheta", dtheta), ("ddtheta", guess)])?;
-        let Rows { A, bias, .. } = self.constraint_rows_at(theta, dtheta);
+        let rows = self.constraint_rows_at(theta, dtheta);
+        self.check_rows(&rows)?;
+        let Rows { A, bias, .. } = rows;
         self.nearest(A, -bias, guess, hold, "no acceleration with the held joints")
     }
 

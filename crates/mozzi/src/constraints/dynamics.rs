@@ -89,13 +89,17 @@ impl Model<f64> {
     /// [`Error::WrongLength`].
     pub fn constraint_anchors(&self, theta: &[f64]) -> Result<Vec<[SE3; 2]>, Error> {
         self.check_configuration(theta)?;
+        Ok(self.anchors(theta))
+    }
+
+    pub(super) fn anchors(&self, theta: &[f64]) -> Vec<[SE3; 2]> {
         let poses = self.link_poses(theta);
         let of = |end: &End<f64>| end.slot.map_or(SE3::identity(), |slot| poses[slot]) * end.T;
         let anchors = self.ties.list.iter().filter_map(|tie| match &tie.kind {
             TieKind::Frames { a, b, .. } => Some([of(a), of(b)]),
             TieKind::Joint { .. } => None,
         });
-        Ok(anchors.collect())
+        anchors.collect()
     }
 
     /// The configurations of the normal frames of all slots in {s}.

@@ -1,8 +1,8 @@
 use crate::constraints::constrained_forward_dynamics;
-use crate::model::description::{Anchor, Closure, Constraint};
+use crate::model::description::{Anchor, Closure, Constraint, Description, Joint, JointKind};
 use crate::scalar::Dual;
 use crate::testing::{closed, floating_mixed_tree, four_bar, mixed_tree, state, tree};
-use crate::{Environment, Error, Model, SE3, Workspace};
+use crate::{Environment, Error, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3, Workspace};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DVector;
@@ -201,4 +201,51 @@ fn the_nearest_closed_position_is_within_the_limits() {
     rocker.limits.position = Some([-0.2, 0.2]); // neither branch
     let error = robot.build().expect("sound").assemble(&[theta[0], 0.0, 0.0], &["crank_pivot"]).expect_err("a limit");
     assert!(error.to_string().contains("`rocker_pivot` at "), "{error}");
+}
+
+/// Two hinges about y, the second 0.3 m along x.
+fn two_hinges() -> Description {
+    let body = SpatialInertia::new(1.0, Vec3::zero(), Sym3::diagonal(0.1, 0.1, 0.1));
+    let hinge = || JointKind::Screw(ScrewAxis::new([0.0, 1.0, 0.0], [0.0; 3]).expect("unit"));
+    let robot = Description::new("two").link("base", SpatialInertia::zero()).link("a", body).link("b", body);
+    let robot = robot.joint(Joint::new("j1", "base", "a", SE3::identity(), hinge()));
+    robot.joint(Joint::new("j2", "a", "b", SE3::translation([0.3, 0.0, 0.0]), hinge()))
+}
+
+/// A weld, and a hinge with opposite axes, that are open by half a turn are not closed, and are closed by (0, π).
+#[test]
+fn half_turns_are_open() {
+    const PI: f64 = core::f64::consts::PI;
+    let at = |w: [f64; 3]| Anchor::world(SE3::new(SO3::exp(Vec3(w)), Vec3([0.3, 0.0, 0.0])));
+    for constraint in [
+        Constraint::weld("loop", at([0.0, PI, 0.0]), "b"),
+        Constraint::hinge("loop", at([PI, 0.0, 0.0]), "b"),
+        Constraint::hinge("loop", at([0.0, PI, 0.0]), "b"),
+    ] {
+        let mut robot = two_hinges();
+        robot.constraints = vec![constraint];
+        let model = robot.build().expect("sound");
+        let phi = model.constraint_errors(&[0.0, 0.0]).expect("lengths");
+        assert!((phi.norm() - 2.0).abs() < 1e-9, "{phi}");
+        let theta = model.assemble(&[0.0, 0.0], &["j1"]).expect("closes");
+        assert!(theta[0] == 0.0 && (theta[1].abs() - PI).abs() < 1e-9, "{theta:?}");
+        assert!(model.constraint_errors(&theta).expect("lengths").amax() < 1e-11);
+    }
+}
+
+/// The lowest point of a wheel that lies flat is no point: an error, not a search without end.
+#[test]
+fn a_wheel_that_lies_flat_is_refused() {
+    let wheel = SpatialInertia::new(2.0, Vec3::zero(), Sym3::diagonal(0.01, 0.01, 0.02));
+    let mut robot = Description::new("wheel").link("wheel", wheel).floating();
+    robot.constraints = vec![Constraint::rolling("rolls", Anchor::world(SE3::identity()), "wheel", 0.1)];
+    let model = robot.build().expect("sound");
+    let theta = model.start().theta;
+    for error in [
+        model.assemble(&theta, &[]).expect_err("flat"),
+        model.assemble_velocities(&theta, &[0.0; 6], &[]).expect_err("flat"),
+        model.assemble_accelerations(&theta, &[0.0; 6], &[0.0; 6], &[]).expect_err("flat"),
+    ] {
+        assert!(error.to_string().contains("constraint `rolls` is undefined"), "{error}");
+    }
 }

@@ -1,7 +1,9 @@
 //! The rows of all constraints at a state, dense.
 
 use super::constraint_jacobian;
-use crate::model::{Error, Model};
+use crate::linalg::Vec3;
+use crate::model::description::Closure;
+use crate::model::{Error, Model, TieKind};
 use crate::scalar::Scalar;
 use crate::workspace::Workspace;
 use alloc::format;
@@ -12,6 +14,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Singular values below this fraction of the largest count as zero: loops are closed only up to rounding.
 pub(crate) const SINGULAR: f64 = 1e-9;
+/// cos(α/2) of an angle at which the kernel loses digits.
+const HALF_TURN: f64 = 1e-3;
 
 /// A, Ȧθ̇ and φ.
 pub(crate) struct Rows {
@@ -34,7 +38,46 @@ impl Model<f64> {
         let (m, n) = (self.constraint_rows(), self.n());
         let (mut A, mut bias, mut phi) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; m]);
         constraint_jacobian(self, theta, dtheta, &mut Workspace::new(self), &mut A, &mut bias, &mut phi);
+        self.note_half_turns(theta, &mut phi);
         Rows { A: DMatrix::from_row_slice(m, n, &A), bias: DVector::from_vec(bias), phi: DVector::from_vec(phi) }
+    }
+
+    /// φ(θ), m numbers: see [`constraint_jacobian`]. Unlike there, what is open by a half turn is: 2 sin(α/2) times the
+    /// axis also of a weld at α = π, and of the angle between the axes of a hinge that are more than 90° apart.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`].
+    pub fn constraint_errors(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
+        self.check_configuration(theta)?;
+        Ok(self.constraint_rows_at(theta, &vec![0.0; self.n()]).phi)
+    }
+
+    fn note_half_turns(&self, theta: &[f64], phi: &mut [f64]) {
+        let frames = self.ties.list.iter().filter_map(|tie| match &tie.kind {
+            TieKind::Frames { closure, .. } => Some((tie.first, *closure)),
+            TieKind::Joint { .. } => None,
+        });
+        for ((first, closure), [a, b]) in frames.zip(self.anchors(theta)) {
+            let R = (a.inverse() * b).R;
+            let angles = &mut phi[first..];
+            match closure {
+                Closure::Weld => {
+                    let (s, v) = R.quaternion();
+                    if s < HALF_TURN {
+                        angles[..3].copy_from_slice(&(v * 2.0).0);
+                    }
+                }
+                Closure::Hinge => {
+                    let [x, y, z] = (R * Vec3([0.0, 0.0, 1.0])).0;
+                    if z < 0.0 {
+                        let (across, size) = (Scalar::sqrt(x * x + y * y), Scalar::sqrt(2.0 * (1.0 - z)));
+                        let axis = if across > 0.0 { [-y / across, x / across] } else { [1.0, 0.0] };
+                        angles[..2].copy_from_slice(&axis.map(|c| c * size));
+                    }
+                }
+                _ => {}
+            }
+        }
     }
 
     /// The indices of the velocities of the joints with these names.
@@ -65,6 +108,9 @@ impl Model<f64> {
 pub(crate) fn least_squares(A: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     if A.nrows() == 0 || A.ncols() == 0 {
         return DVector::zeros(A.ncols());
+    }
+    if !A.iter().chain(b.iter()).all(|x| x.is_finite()) {
+        return DVector::repeat(A.ncols(), f64::NAN); // a decomposition would not end
     }
     let svd = A.clone().svd(true, true);
     let tolerance = SINGULAR * svd.singular_values.max();

@@ -7,7 +7,8 @@ use clap::ValueEnum;
 use mozzi::Description;
 use mozzi::model::description::Joint;
 use mozzi_urdf::{
-    Settings, drives_of_fixed_joints, edit, edit_with_old_values, embedded, expanded, expressible, mjcf, sdf,
+    Settings, drives_of_fixed_joints, edit, edit_with_old_values, embedded, expanded, expressible, mjcf,
+    only_ball_constraints, sdf,
 };
 use std::path::Path;
 
@@ -156,9 +157,13 @@ fn reduced(output: &str, robot: &Description, left_out: &[LeftOut]) -> Descripti
                 }
             }
             LeftOut::Constraints => {
-                let names: Vec<String> = robot.constraints.drain(..).map(|one| format!("`{}`", one.name)).collect();
-                if !names.is_empty() {
-                    omitted(format!("the constraints {}: the robot is a tree", names.join(", ")));
+                let (dropped, renamed) = only_ball_constraints(&mut robot);
+                let dropped: Vec<String> = dropped.iter().map(|name| format!("`{name}`")).collect();
+                if !dropped.is_empty() {
+                    omitted(format!("the constraints {}, which hold no longer", dropped.join(", ")));
+                }
+                for [name, there] in renamed {
+                    omitted(format!("the name of constraint `{name}`, which is read as `{there}`"));
                 }
                 if robot.motors.take().is_some() {
                     omitted("the list of motors".to_string());
