@@ -23,7 +23,8 @@ impl Limits {
     }
 
     /// The limits of velocity, acceleration and effort of the robot's description; a ball's apply to each of its three
-    /// velocities, those of a mimic joint's motion to its source. Of the formats, URDF 1.2 and JSON have limits of acceleration.
+    /// velocities, a mimic joint's velocity and acceleration to its source. Of the formats, URDF 1.2 and JSON have
+    /// limits of acceleration.
     pub fn of(model: &Model) -> Self {
         let mut limits = Limits::none(model);
         for (joint, source) in model.moving_joints().zip(model.sources()) {
