@@ -2,7 +2,7 @@
 
 use super::tree::Tree;
 use super::{Element, Report};
-use crate::model::description::{Anchor, Constraint, ConstraintKind, Gear, JointKind};
+use crate::model::description::{Anchor, Closure, Constraint, ConstraintKind, Gear, JointKind};
 use crate::model::error::names;
 use crate::model::{Base, Description};
 use alloc::collections::{BTreeMap, BTreeSet};
@@ -36,7 +36,8 @@ impl Report<'_> {
                         && !(length > 0.0 && length.is_finite())
                     {
                         let message = format!("is {length} m, expected a positive, finite number");
-                        self.error(element, "length", "bad_length", message);
+                        let what = if matches!(closure, Closure::Rolling(_)) { "radius" } else { "length" };
+                        self.error(element, what, "bad_length", message);
                     }
                     let known = [("a", a), ("b", b)].map(|(which, anchor)| self.anchor(element, which, anchor, frames));
                     if known == [true, true]
