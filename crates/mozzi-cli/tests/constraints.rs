@@ -114,9 +114,11 @@ fn points_of_two_links_are_kept_by_every_format() {
         {"name": "rod", "kind": "distance", "length": 0.5, "a": {"frame": "base"}, "b": {"frame": "b"}},
         {"name": "pin", "kind": "point", "a": {"frame": "base", "xyz": [0.6, 0, 0]}, "b": {"frame": "b", "xyz": [0.3, 0, 0]}}]}"#;
     let loops = file(&folder, "loops.json", loops);
+    let whole = folder.join("whole.json").display().to_string();
+    common::text(&["convert", &robot, &whole, "--constraints", &loops]);
     for ending in ["urdf", "sdf"] {
         let out = folder.join(format!("out.{ending}")).display().to_string();
-        let said = common::mozzi(&["convert", &robot, &out, "--constraints", &loops]);
+        let said = common::mozzi(&["convert", &whole, &out]);
         let said = String::from_utf8(said.stderr).expect("text");
         let text = std::fs::read_to_string(&out).expect("written");
         assert_eq!(text.matches("<drake:ball_constraint>").count(), 1, "{text}");

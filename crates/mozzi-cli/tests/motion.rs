@@ -181,7 +181,7 @@ fn doubtful_motions_are_questioned() {
     assert!(why.contains("--max-velocity: `elbow=0.5`") && why.contains("elbow_joint"), "{why}");
     let told = said(&["compute", "ur5", "g", "--lock", "elbow_joint=90", "--payload", "5,100,0,0"]);
     assert!(told.contains("--lock elbow_joint is in radians, and 90 rad are 14.3 turns"), "{told}");
-    assert!(told.contains("has its centre of mass 100 m away"), "{told}");
+    assert!(told.contains("has its centre of mass 100.00 m away"), "{told}");
     let goals = file(&folder, "goals.csv", "x,y,z,roll,pitch,yaw\n0.5,0.2,0.4,180,0,0\n");
     let told = said(&["ik", "ur5", "--in", &goals, "--deg"]);
     assert!(told.contains("is read in radians"), "{told}");

@@ -6,7 +6,6 @@ use crate::state::{StartArguments, pasted};
 use crate::text::{Page, about, column, rows_of, table};
 use crate::{angles, failure, json};
 use clap::Args;
-use mozzi::quantities::ConstraintResidual;
 use mozzi::{ConstraintRank, Model};
 use serde_json::{Value, json};
 
@@ -75,10 +74,10 @@ pub fn needs_constraints(model: &Model) -> Result<()> {
     }
 }
 
-/// The largest violation of the constraints, rad and m.
+/// The largest violation of the constraints, rad and m; infinite where one is undefined.
 pub fn violation(model: &Model, theta: &[f64]) -> Result<f64> {
-    let phi = model.compute(ConstraintResidual, &[theta], &model.environment())?.remove(0);
-    Ok(phi.iter().fold(0.0, |most, x| if x.abs() <= most { most } else { x.abs() }))
+    let phi = model.constraint_errors(theta)?;
+    Ok(phi.iter().fold(0.0, |most, x| if x.is_nan() { f64::INFINITY } else { x.abs().max(most) }))
 }
 
 /// (θ, θ̇) unchanged if they satisfy the constraints, else the nearest that do, with a note.

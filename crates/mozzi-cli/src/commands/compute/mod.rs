@@ -98,13 +98,25 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
         let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
         if query.declaration().is_constrained {
             let open = violation(&model, slices[0])?;
-            if open > 1e-6 {
+            if open > 1e-6 && open.is_finite() {
                 failure::note(&format!("θ violates the constraints by {}; `mozzi assemble` closes them", about(open)));
             }
         }
         let outputs = model.compute(query, &slices, &environment)?;
         if outputs.iter().flatten().any(|x| !x.is_finite()) {
-            failure::note(&format!("{}: the numbers are too large; entries overflow", hyphenated(query.name())));
+            let why = match query.declaration().is_constrained {
+                true => "a constraint is undefined at θ, or the numbers are too large",
+                false => "the numbers are too large; entries overflow",
+            };
+            failure::note(&format!("{}: {why}", hyphenated(query.name())));
+        } else if query.name().starts_with("constrained_forward_dynamics") {
+            let redundant = model.constraint_rank(slices[0])?.redundant;
+            if let [one, ..] = &redundant[..] {
+                failure::note(&format!(
+                    "λ is not unique: `{one}` and {} other rows depend on the rest, along which it may be rounding",
+                    redundant.len() - 1
+                ));
+            }
         }
         found.push(OneState { query, model: &model, inputs, environment, outputs });
     }
@@ -148,7 +160,8 @@ fn check_constraints(query: Query, model: &Model) -> Result<()> {
     if query.declaration().is_constrained {
         needs_constraints(model)?;
     }
-    if model.constraint_rows() > 0 && query.name().starts_with("forward_dynamics") {
+    let of_tree = ["forward_dynamics", "inverse_dynamics", "gravity_forces"];
+    if model.constraint_rows() > 0 && of_tree.iter().any(|name| query.name().starts_with(name)) {
         failure::note(
             "the robot's constraints do not act in this quantity; `constrained-forward-dynamics` applies them",
         );
