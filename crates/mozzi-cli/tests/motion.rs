@@ -191,7 +191,7 @@ fn doubtful_motions_are_questioned() {
     assert!(why.contains("o.json: only CSV is written here"), "{why}");
     let line = ["trajectory", "ur5", "--to", "1,-1,1,0,0.5,0", "--path", "line", "--time", "3"];
     let (_, why) = complaint(&line);
-    assert!(why.contains("a singular position, or a joint at its limit"), "{why}");
+    assert!(why.contains("a singular position, a joint's limit or the arm's reach"), "{why}");
 }
 
 #[test]

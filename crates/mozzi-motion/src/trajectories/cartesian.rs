@@ -98,8 +98,7 @@ fn off_path(solver: &InverseKinematics, s: f64, goal: SE3, error: Error) -> Erro
         Error::NotReached { theta, .. } => solver.why_not(Goal::Pose(goal), theta),
         _ => None,
     };
-    let why =
-        why.unwrap_or_else(|| "a singular position, or a joint at its limit, is in the way; begin elsewhere".into());
+    let why = why.unwrap_or_else(|| "a singular position, a joint's limit or the arm's reach is in the way".into());
     Error::OffPath { s, why, source: Box::new(error) }
 }
 
