@@ -147,10 +147,11 @@ fn a_ball_constraint_of_drake_is_read_and_written() {
     assert!(rows(&model, &[0.0, 0.0]).1.amax() == 0.0 && model.constraint_rank(&[0.1, 0.2]).unwrap().rank == 2);
     let text = write(&robot).unwrap();
     assert_eq!(parse_with("w.urdf", &text, Policy::Strict).unwrap().description, robot, "{text}");
-    // under another name, or of another kind, it is no longer Drake's
+    // it has no other name, and no other kind
     let named = Constraint { name: "foot".into(), ..robot.constraints[0].clone() };
-    for other in [named, Constraint::weld("ball_constraint0", "c", "a")] {
-        let reason = format!("constraint `{}`", other.name);
+    let of_name = "the name of constraint `foot`, which is read as `ball_constraint0`";
+    let weld = Constraint::weld("ball_constraint0", "c", "a");
+    for (other, reason) in [(named, of_name), (weld, "constraint `ball_constraint0`")] {
         let changed = Description { constraints: vec![other], ..robot.clone() };
         assert_eq!(write(&changed).unwrap_err().reasons, [reason]);
     }
