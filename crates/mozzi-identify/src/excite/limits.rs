@@ -41,6 +41,8 @@ pub struct MotionLimits {
 const TO_SPEED: f64 = 0.3;
 /// The length to which what leaves a box, or comes too near, is relative, m.
 const SIZE: f64 = 0.1;
+/// Half the range of a joint that does not move, rad or m.
+const NARROW: f64 = 1e-6;
 /// The share of a limit that tightened limits leave.
 const ROOM: f64 = 0.1;
 
@@ -113,8 +115,8 @@ impl MotionLimits {
         let mut all: Vec<(f64, String)> = Vec::new();
         for (j, joint) in model.joint_names().enumerate() {
             let [low, high] = self.position[j];
-            let off = (low - theta[j]).max(theta[j] - high);
-            all.push((off / (high - low), format!("`{joint}` at {:.4}, beyond {low:.4} … {high:.4}", theta[j])));
+            let off = (theta[j] - 0.5 * (low + high)).abs() / (0.5 * (high - low)).max(NARROW) - 1.0;
+            all.push((off, format!("`{joint}` at {:.4}, beyond {low:.4} … {high:.4}", theta[j])));
             for (what, x, limit) in [
                 ("velocity", dtheta[j], self.velocity[j]),
                 ("acceleration", ddtheta[j], self.acceleration[j]),
@@ -148,7 +150,7 @@ impl MotionLimits {
         let mut sum = 0.0;
         for j in 0..self.velocity.len() {
             let [low, high] = self.position[j];
-            let half = (0.5 * (high - low)).max(1e-6);
+            let half = (0.5 * (high - low)).max(NARROW);
             let cases = [
                 (0, state[0][j] - 0.5 * (low + high), half),
                 (1, state[1][j], self.velocity[j]),

@@ -207,7 +207,7 @@ impl<'a, 'm> Objective<'a, 'm> {
 
     /// Where a motion may begin: the given start, which must keep the limits at rest, or a state that does.
     pub fn start(&mut self) -> Result<Vec<f64>, Error> {
-        let (limits, n) = (&self.options.limits, self.columns.model.n());
+        let limits = &self.options.limits;
         if let Some(start) = &self.options.start {
             return match self.broken(start)? {
                 None => Ok(start.clone()),
@@ -227,17 +227,16 @@ impl<'a, 'm> Objective<'a, 'm> {
                 theta.iter_mut().zip(&limits.position).for_each(|(x, range)| *x += share(range) * random.next());
             }
             let f = |theta: &[f64]| {
-                let mut gradient = still(theta);
-                let at = still(theta);
-                gradient[0].fill(0.0);
-                (self.excess(&tight, &at, &mut gradient), core::mem::take(&mut gradient[0]))
+                let mut gradient = still(&vec![0.0; theta.len()]);
+                let excess = self.excess(&tight, &still(theta), &mut gradient);
+                (excess, core::mem::take(&mut gradient[0]))
             };
             lbfgs::minimize(&mut theta, ATTEMPT_STEPS, 1e-6, 0.3, f, &|| false);
             if self.broken(&theta)?.is_none() {
                 return Ok(theta);
             }
         }
-        let found = self.broken(&limits.middle())?.unwrap_or_else(|| format!("broken by each of {n} joints"));
+        let found = self.broken(&limits.middle())?.unwrap_or_else(|| "kept nowhere".into());
         let expected = "limits that the robot can keep at rest";
         Err(Error::BadOption { option: "what limits the motion", found, expected: expected.into() })
     }
