@@ -62,9 +62,9 @@ pub fn read(file: &str) -> Result<Vec<(u64, Goal)>> {
             unknown + 1
         )));
     }
-    if let Some(twice) = (1..header.len()).find(|&k| header[..k].contains(&header[k])) {
-        let (name, first) = (&header[twice], header.iter().position(|cell| *cell == header[twice]).unwrap_or(0) + 1);
-        let second = twice + 1;
+    let twin = |k: usize| Some((header[..k].iter().position(|cell| *cell == header[k])? + 1, k + 1));
+    if let Some((first, second)) = (1..header.len()).find_map(twin) {
+        let name = &header[first - 1];
         return Err(Failure::wrong(format!(
             "{file}:1: columns {first} and {second} are both called `{name}`, expected one"
         )));

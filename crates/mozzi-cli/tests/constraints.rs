@@ -99,7 +99,8 @@ fn inverse_kinematics_and_identification_refuse_loops() {
     refused(&["identify", &robot, &log]);
 }
 
-/// Drake's element has no name: what URDF and SDFormat can say is kept, the rest and lost names are told.
+/// URDF and SDFormat keep points of two links, as Drake's element, which has no name. A note names each constraint and
+/// each name that is lost.
 #[test]
 fn points_of_two_links_are_kept_by_every_format() {
     let folder = folder("constraints-drake");

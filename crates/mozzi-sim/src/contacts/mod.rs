@@ -261,13 +261,13 @@ impl Contacts<'_> {
             let is_ratio = (0.0..=1.0).contains(restitution);
             check(is_ratio, "the coefficient of restitution", says(&format!("{restitution}")), "0 to 1")?;
             let z = Vec3([0.0, 0.0, 1.0]);
-            let (radii, axis) = match *support {
-                Support::Point => ([0.0; 3], z),
-                Support::Sphere { radius } => ([radius; 3], z),
-                Support::Disc { axis, radius, turn } => ([radius; 3], axis * if turn.is_finite() { 1.0 } else { turn }),
-                Support::Ellipsoid { radii, .. } => (radii, z),
+            let (radii, axis, turn) = match *support {
+                Support::Point => ([0.0; 3], z, 0.0),
+                Support::Sphere { radius } => ([radius; 3], z, 0.0),
+                Support::Disc { axis, radius, turn } => ([radius; 3], axis, turn),
+                Support::Ellipsoid { radii, .. } => (radii, z, 0.0),
             };
-            let numbers = [center.0, axis.0].concat();
+            let numbers = [&center.0[..], &axis.0, &[turn]].concat();
             let is_finite = numbers.iter().all(|x| x.is_finite()) && Scalar::sqrt(axis.dot(axis)) > 0.0;
             check(is_finite, "the shape", says(&format!("{support:?} at {center:?}")), "finite numbers and an axis")?;
             for radius in radii {
