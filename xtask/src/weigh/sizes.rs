@@ -3,6 +3,7 @@
 use super::Row;
 use crate::command;
 use crate::package;
+use crate::report::Outcome;
 use crate::venv;
 use crate::wheel;
 use crate::workspace::Workspace;
@@ -45,10 +46,15 @@ fn wheel(workspace: &Workspace) -> Result<u64, String> {
     if !venv::python(workspace).is_file() {
         return Err("there is no Python environment to pack a wheel in: cargo xtask test makes it".into());
     }
+    if let Outcome::Failed(why) = venv::add(workspace, wheel::TOOLS) {
+        return Err(why);
+    }
     let files = workspace.scratch("weigh-wheel")?;
     let cargo = ["build", "--profile", "library", "--package", "mozzi-py"];
     package::put_together(workspace, &files, &cargo, "library")?;
-    size(&wheel::pack(workspace, &files)?)
+    let file = wheel::pack(workspace, &files)?;
+    wheel::recompress(workspace, &file)?;
+    size(&file)
 }
 
 fn c_library(workspace: &Workspace) -> Result<u64, String> {

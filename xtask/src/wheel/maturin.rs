@@ -1,13 +1,15 @@
 //! maturin, in such a way that the same sources give the same file: no path of this machine and no time of the build is
 //! in it.
 
-use super::PACKAGE;
+use super::{PACKAGE, only_file};
 use crate::command;
 use crate::venv;
 use crate::workspace::Workspace;
 use crate::zig;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+const RECOMPRESS: &str = "xtask/src/wheel/recompress.py";
 
 /// Where a wheel is built.
 pub struct Sources {
@@ -32,14 +34,19 @@ impl Sources {
 pub fn build(workspace: &Workspace, sources: &Sources, to: &Path) -> Result<(), String> {
     let mut maturin = command(workspace, "build", &sources.project, to)?;
     if cfg!(target_os = "linux") {
-        maturin
-            .args(["--compression-level", "9", "--zig", "--compatibility"])
-            .arg(format!("manylinux_2_{}", zig::GLIBC));
+        maturin.args(["--zig", "--compatibility"]).arg(format!("manylinux_2_{}", zig::GLIBC));
     }
     if sources.offline {
         maturin.env("CARGO_NET_OFFLINE", "true");
     }
-    command::run(maturin.env("CARGO_TARGET_DIR", &sources.target).env("RUSTFLAGS", zig::flags(&sources.root)))
+    command::run(maturin.env("CARGO_TARGET_DIR", &sources.target).env("RUSTFLAGS", zig::flags(&sources.root)))?;
+    recompress(workspace, &only_file(to)?)
+}
+
+/// By a better compressor than maturin's and pip's.
+pub fn recompress(workspace: &Workspace, wheel: &Path) -> Result<(), String> {
+    let mut python = Command::new(venv::python(workspace));
+    command::run(python.arg(workspace.path(RECOMPRESS)).arg(wheel))
 }
 
 /// Writes the source distribution into a folder.
