@@ -6,8 +6,17 @@ const NEEDS = { frame: true, task: true };
 
 export const LANGUAGES = { python: "Python", rust: "Rust", cpp: "C++", shell: "Command line" };
 
-// `robot`: the name of an embedded robot or the file's; `inputs`: [name, numbers] pairs of the quantity.
-export function codeOf(language, { robot, isFloating, quantity, frame, inputs, outputs }) {
+// The file that the tab saves. Browsers, shells and strings in programs take all other characters of a name as they are.
+export const jsonOf = ({ name }) => `${name.replace(/[\s/\\:*?"'`$<>|&;()!]+/g, "_") || "robot"}.json`;
+
+// `robot`: the name of an embedded robot or the file's; `isSaved`: the file is the one that the tab saves; `inputs`: [name, numbers]
+// pairs of the quantity.
+export function codeOf(language, { isSaved, ...asked }) {
+  const mark = { python: "#", shell: "#" }[language] ?? "//";
+  return `${isSaved ? `${mark} save ${asked.robot} first: a button below, JSON\n` : ""}${program(language, asked)}`;
+}
+
+function program(language, { robot, isFloating, quantity, frame, inputs, outputs }) {
   const names = inputs.map(([name]) => name);
   const ofFrame = NEEDS[quantity.of];
   switch (language) {
@@ -34,7 +43,7 @@ export function codeOf(language, { robot, isFloating, quantity, frame, inputs, o
       ].join("\n");
     case "shell":
       return [
-        `mozzi compute ${robot} ${quantity.name.replaceAll("_", "-")}${isFloating ? " --floating" : ""}`,
+        `mozzi compute ${/^[\w.-]+$/.test(robot) ? robot : `'${robot}'`} ${quantity.name.replaceAll("_", "-")}${isFloating ? " --floating" : ""}`,
         ...inputs.map(([name, numbers]) => `--${name}=${numbers.join(",")}`),
         ...(ofFrame ? [`--frame ${frame}`] : []),
       ].join(" \\\n  ");
@@ -62,10 +71,7 @@ const EMBEDDED = ["anymal", "double_pendulum", "furuta_pendulum", "panda", "two_
 function pythonOf(robot, isFloating) {
   const floating = isFloating ? "floating=True" : "";
   if (EMBEDDED.includes(robot)) return `mozzi.models.${robot}(${robot === "anymal" && !isFloating ? "floating=False" : floating})`;
-  // Python reads no JSON
-  if (/\.json$/i.test(robot)) return `mozzi.Model.from_urdf("robot.urdf")  # mozzi convert ${robot} robot.urdf`;
-  const reader = /\.(xml|mjcf)$/i.test(robot) ? "from_mjcf" : "from_urdf";
-  return `mozzi.Model.${reader}("${robot}"${floating && `, ${floating}`})`;
+  return `mozzi.Model.load("${robot}"${floating && `, ${floating}`})`;
 }
 
 // Memory for an output in C++; matrices by rows.

@@ -1,6 +1,6 @@
 // The lines that compute the same, and the files of this robot and its motion.
 
-import { LANGUAGES, codeOf } from "./code.js";
+import { LANGUAGES, codeOf, jsonOf } from "./code.js";
 import { command, read } from "./session.js";
 
 export class CodePanel {
@@ -22,7 +22,7 @@ export class CodePanel {
     files.className = "nudges";
     this.button(files, "Motion as CSV", () => app.save(`${app.robot.name}.csv`, app.record.csv(app.robot), "text/csv"));
     this.button(files, "Robot as URDF", () => this.urdf());
-    this.button(files, "Robot as JSON", () => app.save(`${app.robot.name}.json`, command(app.robot, { do: "json" }).text, "application/json"));
+    this.button(files, "Robot as JSON", () => app.save(jsonOf(app.robot), command(app.robot, { do: "json" }).text, "application/json"));
     this.button(files, "Picture", () => app.savePicture());
     this.note = host.appendChild(document.createElement("p"));
     this.note.className = "note";
@@ -51,6 +51,7 @@ export class CodePanel {
 
   take(robot) {
     this.robot = robot;
+    this.note.textContent = "";
     const before = this.quantity.value;
     // those of pictures are no part of the library's list
     this.listed = robot.quantities.filter(({ outputs }) => outputs);
@@ -70,13 +71,15 @@ export class CodePanel {
     } catch {
       outputs = quantity.outputs.map((name) => ({ name, shape: [] }));
     }
-    const isOther = (app.isEdited && !app.isJustFreed) || Object.keys(app.values).length > 0;
+    const { entry } = app;
+    const hasFile = entry.isEmbedded || entry.isAsFile || (entry.isDropped && !entry.isLinked);
+    const isSaved = !hasFile || (app.isEdited && !app.isJustFreed) || Object.keys(app.values).length > 0;
     this.code.textContent = codeOf(this.language.value, {
-      robot: isOther ? `${robot.name}.json` : app.entry.isEmbedded ? app.entry.name : app.entry.file.split("/").pop(),
-      isFloating: robot.isFloating && app.isJustFreed,
+      robot: isSaved ? jsonOf(robot) : entry.isEmbedded ? entry.name : entry.file.split("/").pop(),
+      isSaved,
+      isFloating: !isSaved && robot.isFloating && app.isJustFreed,
       quantity, outputs, frame: app.frameName,
       inputs: quantity.inputs.map((name) => [name, read(robot, name)]),
     });
-    this.note.textContent = isOther ? "The robot was edited: save it as JSON and open that file in these lines." : "";
   }
 }

@@ -34,7 +34,8 @@ export class EditPanel {
       const box = scale.appendChild(Object.assign(document.createElement("input"), { type: "checkbox", checked: this.scales }));
       scale.append(" a new mass scales the inertia");
       box.addEventListener("change", () => (this.scales = box.checked));
-      this.note(`The inertia is about the centre of mass, in the link's axes.${link.isPhysical ? "" : " No rigid body has this inertia."}`);
+      this.note(`The inertia is about the centre of mass, in the link's axes.`);
+      if (!link.isPhysical) this.note("No rigid body has this inertia.").classList.add("wrong");
     }
     this.heading("Friction and armature of the joints");
     this.choice("Joint", [["", "all joints"], ...now.joints.map(({ name }) => [name, name])], this.joint, (name) => (this.joint = name));
@@ -82,7 +83,7 @@ export class EditPanel {
   }
 
   note(text) {
-    Object.assign(this.host.appendChild(document.createElement("p")), { className: "note", textContent: text });
+    return Object.assign(this.host.appendChild(document.createElement("p")), { className: "note", textContent: text });
   }
 
   button(row, text, act) {
@@ -115,6 +116,10 @@ export class EditPanel {
       const input = label.appendChild(Object.assign(document.createElement("input"), { type: "number", step: "any", value: values[k] }));
       input.dataset.entry = entry;
       input.addEventListener("change", () => Number.isFinite(input.valueAsNumber) && this.app.edit(editOf(entry, input.valueAsNumber)));
+      // a number that is accepted makes new fields; one that is refused goes
+      const back = () => (input.value = values[k]);
+      input.addEventListener("blur", back);
+      input.addEventListener("keydown", ({ key }) => key === "Escape" && back());
     });
   }
 }

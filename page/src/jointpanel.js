@@ -59,10 +59,14 @@ export class JointPanel {
       label.append(name);
       const input = label.appendChild(Object.assign(document.createElement("input"), { type: "number", step: "0.1" }));
       input.addEventListener("change", () => {
+        if (!Number.isFinite(input.valueAsNumber)) return;
         const dtheta = [...app.state.dtheta];
-        dtheta[j] = Number(input.value);
+        dtheta[j] = input.valueAsNumber;
         app.setRates(dtheta);
       });
+      const back = () => (input.value = Number(app.state.dtheta[j].toFixed(4)));
+      input.addEventListener("blur", back);
+      input.addEventListener("keydown", ({ key }) => key === "Escape" && back());
       return input;
     });
   }

@@ -14,7 +14,7 @@ export const KINDS = {
   manipulability: { group: "motion", name: "velocity ellipsoid", key: "m", colour: "#1f9bb0", about: "velocities of the end effector's origin at ‖θ̇‖ = 1, {v: v = J_v θ̇}" },
   path: { group: "motion", name: "path", key: "h", colour: "#3b7dd8", about: "of the end effector's origin" },
   wrenches: { group: "forces", name: "wrenches", key: "w", colour: "#d0433f", about: "that each joint transmits to its link: moment (orange), force (red)" },
-  constraints: { group: "forces", name: "constraints", key: "o", colour: "#b0309a", about: "lines between the points that they hold together; in a motion the force that each carries" },
+  constraints: { group: "forces", name: "constraints", key: "o", colour: "#b0309a", about: "lines between the points that they hold together, and where the motion is known the force that each carries" },
   contacts: { group: "forces", name: "contacts", key: "x", colour: "#4f46e5", about: "points that touch planes (grey: they do not), the force with which the plane pushes the robot, and in a motion the cone of friction of half-angle atan μ, as high as that force's normal part; orange: the force is on the cone, the point slides" },
   applied: { group: "forces", name: "robot's side", key: "j", colour: "#4f46e5", about: "contacts from the robot's side: the force with which the robot pushes the plane" },
   torque: { group: "forces", name: "force ellipsoid", key: "e", colour: "#e07b39", about: "forces at the end effector that ‖τ‖ = 1 holds, {f: ‖J_vᵀf‖ = 1}: long where the velocity ellipsoid is short" },

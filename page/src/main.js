@@ -52,7 +52,7 @@ find("about").textContent = [motion?.title, aboutRobot(robot, mass)].filter(Bool
 const scene = new Scene(find("scene"), robot);
 const reach = reachOf();
 const overlays = new Overlays(robot, scene, reach, jointColour, motion?.contacts);
-const skeleton = addSkeleton(robot, scene, reach, jointColour);
+const skeleton = addSkeleton(robot, scene, reach, jointColour, state.theta);
 const matrix = new MatrixPicture(find("matrix"), robot.velocities, unitOf({ of: "robot" }, { name: "M", shape: [robot.n, robot.n], unit: "kg m², kg m or kg" }, robot));
 const plots = [];
 

@@ -207,7 +207,7 @@ async function start() {
   let entry = entries[data.first ?? 0];
   if (linked) {
     const { name, files, file } = linked.robot;
-    entry = files ? { name, files, file, meshes: [], isDropped: true } : entries.find((known) => known.name === name) ?? entry;
+    entry = files ? { name, files, file, meshes: [], isDropped: true, isLinked: true } : entries.find((known) => known.name === name) ?? entry;
     if (files) entries.unshift(entry);
     Object.assign(app.settings, linked.settings, { target: null });
   }

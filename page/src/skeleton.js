@@ -1,6 +1,7 @@
 // A robot without geometry, or without its skin: bones between joints, a drum, a slide or a sphere at each joint.
 
 import * as THREE from "three";
+import { turnedBack } from "./vectors.js";
 
 const Z = new THREE.Vector3(0, 0, 1);
 
@@ -15,18 +16,34 @@ function bone(from, to, thick, thin, material) {
   return mesh;
 }
 
-// Where a body's bones lead: to the joints that it carries, or, of a tip, to its farthest frame and its centre of mass.
-function ends(robot, k) {
+// Where a body's bones lead: to the joints that it carries and the anchors of constraints on it, or, of a tip, to its farthest frame
+// or its centre of mass.
+function ends(robot, k, anchors) {
   const children = robot.bodies.filter((body) => body.parent === k && body.kind !== "free").map(({ at }) => at);
-  if (children.length > 0) return children;
+  if (children.length > 0) return [...children, ...anchors];
   const length = (p) => Math.hypot(...p);
   const frames = robot.frames.filter((frame) => frame.body === k).map(({ p }) => p);
   const far = frames.reduce((best, p) => (length(p) > length(best) ? p : best), [0, 0, 0]);
   const { center } = robot.bodies[k];
-  return length(far) > length(center) ? [far] : [center];
+  if (length(far) > length(center)) return [far, ...anchors];
+  return anchors.length > 0 ? anchors : [center];
 }
 
-export function addSkeleton(robot, scene, reach, jointColour) {
+// For each body the anchors of constraints on it, in its frame, from a configuration: that of the robot's inputs, which stays.
+function anchorsOf(robot, theta) {
+  const found = robot.bodies.map(() => []);
+  if (robot.constraints.length === 0) return found;
+  const poses = robot.bodyPoses(robot.poses(theta));
+  const { a, b } = robot.compute({ quantity: "constraint_anchors" }, { theta });
+  robot.constraints.forEach((constraint, i) => [[constraint.a, a], [constraint.b, b]].forEach(([frame, points]) => {
+    if (!frame) return;
+    const k = robot.frames.find(({ name }) => name === frame).body;
+    found[k].push(turnedBack(poses[k].R, points.slice(3 * i, 3 * i + 3).map((x, j) => x - poses[k].p[j])));
+  }));
+  return found;
+}
+
+export function addSkeleton(robot, scene, reach, jointColour, theta) {
   const parts = [];
   const r = 0.02 * reach;
   const metal = new THREE.MeshStandardMaterial({ color: 0x9aa7b5, roughness: 0.5, metalness: 0.25 });
@@ -37,9 +54,10 @@ export function addSkeleton(robot, scene, reach, jointColour) {
     scene.bodies[k].add(mesh);
     parts.push(mesh);
   };
+  const anchors = anchorsOf(robot, theta);
   robot.bodies.forEach((body, k) => {
     if (k === 0) add(0, base(robot, r, metal));
-    for (const end of ends(robot, k)) add(k, bone(body.point, end, 1.05 * r, 0.7 * r, metal));
+    for (const end of ends(robot, k, anchors[k])) add(k, bone(body.point, end, 1.05 * r, 0.7 * r, metal));
     if (k > 0) add(k, joint(body, r, metal, jointColour(body.j), before(robot, k)));
   });
   return parts;

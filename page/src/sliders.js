@@ -67,9 +67,13 @@ function field(host, { name, isLength, range, colour, point }, take) {
   number.setAttribute("aria-label", `${name}, a number`);
   const slider = div.appendChild(document.createElement("input"));
   Object.assign(slider, { type: "range", id: label.htmlFor, min: low, max: high, step: "any" });
+  let now = 0;
+  const write = () => (number.value = Number(now.toFixed(4)));
   const show = (value, from) => {
+    now = value;
     if (from !== slider) slider.value = value;
-    if (from !== number) number.value = Number(value.toFixed(4));
+    // a number stays as it is typed
+    if (document.activeElement !== number) write();
   };
   for (const input of [slider, number])
     input.addEventListener("input", () => {
@@ -78,5 +82,8 @@ function field(host, { name, isLength, range, colour, point }, take) {
       show(value, input);
       take(value);
     });
+  // what is no number goes
+  number.addEventListener("blur", write);
+  number.addEventListener("keydown", ({ key }) => key === "Escape" && write());
   return (value) => show(value, null);
 }

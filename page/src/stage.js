@@ -11,6 +11,7 @@ import { floorHeight } from "./floor.js";
 import { Scene } from "./scene.js";
 import { addShapes, seeThrough } from "./shapes.js";
 import { addSkeleton } from "./skeleton.js";
+import { rows } from "./robot.js";
 import { scales, showScales } from "./scales.js";
 import { fillToggles } from "./toggles.js";
 import { add, scaled } from "./vectors.js";
@@ -35,7 +36,7 @@ export class Stage {
     else this.scene = new Scene(this.host, robot, { drawn: this.quality.software, scale: this.quality.still });
     this.reach = this.reachOf(theta);
     this.addOverlays();
-    this.skeleton = addSkeleton(robot, this.scene, this.reach, this.jointColour);
+    this.skeleton = addSkeleton(robot, this.scene, this.reach, this.jointColour, theta);
     this.marks?.forEach((mark) => mark.removeFromParent());
     this.push = new Arrow(PUSH, 0.009 * this.reach);
     this.touches = [];
@@ -121,7 +122,7 @@ export class Stage {
     const T = this.robot.poses(state.theta);
     this.scene.place(T, this.robot.bodyPoses(T));
     this.applied(state);
-    this.measure({ ...state, tip: null, loops: null, touch: null });
+    this.measure({ ...state, tip: null, loops: this.loops(state), touch: null });
     this.push.visible = false;
     if (state.push) this.push.set(add(state.push.p, scaled(state.push.f, -this.lengthOf(state.push.f))), scaled(state.push.f, this.lengthOf(state.push.f)));
     this.placeTouches(this.shown.contacts ? state.touches ?? [] : []);
@@ -137,9 +138,16 @@ export class Stage {
     this.apply([...touches.flatMap(({ p, f }) => [...p, ...f]), ...(push ? [...push.p, ...scaled(push.f, -1)] : [])]);
   }
 
+  // The wrenches that constraints carry, after what is applied is set.
+  loops({ theta, dtheta, ddtheta, tau }) {
+    if (!this.shown.constraints || !ddtheta || !tau) return null;
+    const { moment, force } = this.robot.compute({ quantity: "constraint_wrenches" }, { theta, dtheta, ddtheta, tau });
+    return rows(moment, 3).flatMap((m, k) => [...m, ...force.slice(3 * k, 3 * k + 3)]);
+  }
+
   // Arrows by the longest so far.
   measure(state) {
-    if (this.shown.twists || this.shown.wrenches) {
+    if (this.shown.twists || this.shown.wrenches || this.shown.constraints) {
       const before = { ...this.overlays.longest };
       this.overlays.measure([state]);
       for (const [kind, size] of Object.entries(before)) this.overlays.longest[kind] = Math.max(0.98 * size, this.overlays.longest[kind]);

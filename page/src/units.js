@@ -17,7 +17,8 @@ export function unitOf(quantity, { name, shape, unit }, robot) {
   const motion = motionOf(robot);
   if (!unit || motion === "both") return unit ?? "";
   const [main, ...rest] = unit.split(/(?=, each per )/);
-  const pick = (list) => (motion === "turns" ? list[0] : list.at(-1));
+  // a number without a unit has none in either case
+  const pick = (list) => (motion === "turns" || list[0] === "1" ? list[0] : list.at(-1));
   if (hasSixRows(quantity, name, shape)) {
     const groups = main.split(", ").map((group) => group.split(" or "));
     if (groups.length === 2) return [groups.map(pick).join(", "), ...rest].join("");

@@ -15,6 +15,9 @@ export const turned = (R, x) => [
   R[6] * x[0] + R[7] * x[1] + R[8] * x[2],
 ];
 
+// By the transpose of R.
+export const turnedBack = (R, x) => [0, 1, 2].map((k) => R[k] * x[0] + R[k + 3] * x[1] + R[k + 6] * x[2]);
+
 export const identity = () => ({ R: [1, 0, 0, 0, 1, 0, 0, 0, 1], p: [0, 0, 0] });
 
 // From the first three rows of a homogeneous matrix, row-major.

@@ -212,7 +212,7 @@ Examples:
   mozzi identify ur5 log.csv --only payload --payload tool0          weigh what the robot carries
   mozzi identify ur5 log.csv --only friction --stribeck 0.1
   mozzi identify ur5 a.csv b.csv --validate c.csv --fit 70           several logs; 30 % of each is predicted
-  mozzi identify ur5 a.csv b.csv --torque current --known-payload 2:tool0=4,0,0,0.1
+  mozzi identify ur5 a.csv b.csv --torque current --known-payload 2:tool0=4,0,0.05,0.1
 Logs are described in docs/identify.md: names of columns such as theta_elbow, q1, pos_elbow_deg, effort_elbow, current_1.";
 
 const EXCITATIONS: &str = "\

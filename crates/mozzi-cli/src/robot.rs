@@ -309,13 +309,13 @@ impl Units {
         }
     }
 
-    /// "N m" from "N m or N"; the unit of turning joints precedes that of sliding ones.
+    /// "N m" from "N m or N"; the unit of turning joints precedes that of sliding ones. A ratio is a number for both.
     pub fn own(&self, unit: &str) -> String {
         let (units, each) = unit.split_at(unit.find(", each").unwrap_or(unit.len()));
         let mut alternatives = units.split(", ").flat_map(|part| part.split(" or "));
         let own = match self {
             Units::Turning => alternatives.next(),
-            Units::Sliding => alternatives.last(),
+            Units::Sliding => alternatives.clone().find(|unit| *unit == "1").or_else(|| alternatives.last()),
             Units::Both => None,
         };
         format!("{}{each}", own.unwrap_or(units))

@@ -298,6 +298,10 @@ fn wrong_motions() {
         said.contains("joint limit: `shoulder_pan_joint` reaches 9, beyond its limit 6.2831853, at t = 1 s"),
         "{said}"
     );
+    let strict = ["trajectory", "ur5", "--to", "9,-1,1,0,0.5,0", "--time", "9", "--strict"];
+    assert_eq!(common::mozzi(&strict).status.code(), Some(1));
+    let within = strict.map(|word| if word.starts_with('9') && word.len() > 1 { "1,-1,1,0,0.5,0" } else { word });
+    assert!(common::mozzi(&within).status.success());
     for (text, words) in [
         ("{", "is not valid JSON"),
         ("{}", "`controller` is missing"),

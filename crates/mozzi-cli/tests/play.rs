@@ -263,6 +263,8 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
         assert!(seen.contains(&format!("\"{name}\"")), "Tab does not reach {name}: {seen}");
     }
     assert_eq!(keyboard["tab"], "tab-numbers");
+    let [above, below] = numbers(&keyboard["tabs"])[..] else { panic!("two edges") };
+    assert!((above - below).abs() < 1.5, "on a phone the tabs stay below the controls: {above}, not {below}");
     let theta = |k: usize| numbers(&keyboard["states"][k]["theta"]);
     assert!(theta(0) != theta(1) && theta(1) != theta(2), "arrows and buttons move the robot");
     assert_ne!(keyboard["themes"][0], keyboard["themes"][1]);
@@ -284,6 +286,47 @@ fn a_visitor_drops_plays_drags_edits_and_shares() {
         // an impact against a stop is located to a step
         assert!(robot["drift"].as_f64().is_some_and(|x| x.abs() < 2e-2), "{robot}");
     }
+}
+
+/// URDF has neither gravity nor closed loops, and a menu's robot is no file that its reader has.
+#[test]
+fn programs_compute_what_the_page_shows() {
+    let program = match browser() {
+        Ok(program) => program,
+        Err(why) => return println!("skipped: {why}; cargo xtask test sets it where a Chromium is installed"),
+    };
+    let folder = folder("play_programs");
+    let moon = page(&folder, "moon", &["ur5", "--gravity", "moon"]);
+    let ur5 = page(&folder, "ur5", &["ur5"]);
+    let edit = json!({ "what": "gravity", "gravity": [0.0, 0.0, -1.62] });
+    let jobs = vec![
+        job("programs", &moon, json!({ "quantity": "gravity_forces" })),
+        job("programs", &ur5, json!({ "quantity": "gravity_forces", "edit": edit })),
+        job("programs", &ur5, json!({ "quantity": "constrained_forward_dynamics", "robot": "four-bar linkage" })),
+        job("fields", &ur5, json!({})),
+    ];
+    let found = run("play.py", &program, &Value::Array(jobs.clone()));
+    assert_quiet(&found, &jobs);
+    for (found, name) in found.iter().zip(["ur5.json", "ur5.json", "four-bar.json"]) {
+        assert_eq!(found["saved"]["name"], name);
+        let python = found["code"]["python"].as_str().expect("text");
+        assert!(python.contains(&format!("mozzi.Model.load(\"{name}\")")), "{python}");
+        let file = common::file(&folder, name, found["saved"]["text"].as_str().expect("text"));
+        let shell = found["code"]["shell"].as_str().expect("text");
+        let (comment, line) = shell.split_once('\n').expect("two lines");
+        assert!(comment.starts_with(&format!("# save {name} first")), "{shell}");
+        let line = line.replace("\\\n", " ").replace(name, &file);
+        let words: Vec<&str> = line.split_whitespace().skip(1).collect();
+        let computed = json(&words);
+        for (output, shown) in found["shown"].as_object().expect("outputs") {
+            assert_same(&format!("{words:?}: {output}"), &flat(&computed[output]), &flat(shown));
+        }
+    }
+    assert_eq!(found[2]["carried"], json!([true]), "the pin's force has an arrow");
+    let fields = &found[3];
+    assert_eq!(fields["typed"], json!(["-1.25", -1.25]));
+    assert_eq!(fields["emptied"], json!(["-1.25", -1.25]), "a field shows the value in effect");
+    assert_eq!(fields["refused"][0], fields["refused"][1], "a mass below 0 goes");
 }
 
 /// ANYmal's legs with bent knees, in the order of its joints.
@@ -319,6 +362,7 @@ fn a_playground_is_a_file_or_served() {
     assert!(
         page.starts_with("<!doctype html>") && page.contains("\"name\":\"own.urdf\"") && page.contains("\"first\":0")
     );
+    assert!(page.contains("\"isAsFile\":true"), "programs open the file itself");
     let said = json(&["play", "ur5", "--out", folder.join("ur5.html").to_str().expect("text")]);
     assert_eq!(said["robot"], "ur5");
     let (code, said) = common::complaint(&["play", "nowhere.urdf", "--out", "never.html"]);

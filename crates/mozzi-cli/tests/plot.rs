@@ -44,6 +44,10 @@ fn every_kind_of_figure_is_written() {
     assert!(svg.contains("step h [s]") && svg.contains("evaluations of θ̈"), "{svg:.400}");
     let (_, svg) =
         drawn(&["ellipsoids", "ur5", "--theta", "0,-1.2,1.5,0.3,1.1,0", "--theta=0,-2,1,0,1,0", "--plane", "xz"]);
+    text(&["simulate", "ur5", "--floating", "--time", "0.01", "--out", &slower]);
+    let output = common::mozzi(&["plot", "trajectory", "ur5", &slower, "--floating", "--out", &figure]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("the floating base is not drawn, only the joints"), "{said}");
     let found = common::json(&["plot", "ellipsoids", "ur5", "--floating", "--out", &figure]);
     assert_eq!(found["out"], *figure);
     let arguments =

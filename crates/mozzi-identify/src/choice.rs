@@ -67,14 +67,15 @@ impl Choice {
         }
     }
 
-    /// Friction and offsets alone: the robot's masses are trusted.
-    pub fn only_friction() -> Self {
-        Choice { links: false, armature: false, apparent: false, ..Choice::all(Sensor::Motor) }
+    /// The joints alone, friction and offsets; the robot's masses are trusted. Armature, too, if torque is measured at
+    /// the motor: few files have it.
+    pub fn only_friction(sensor: Sensor) -> Self {
+        Choice { links: false, apparent: false, ..Choice::all(sensor) }
     }
 
-    /// A payload at a frame, with friction and offsets.
-    pub fn only_payload(frame: FrameId) -> Self {
-        Choice { payload: Some(frame), ..Choice::only_friction() }
+    /// A payload at a frame, with the joints' parameters.
+    pub fn only_payload(frame: FrameId, sensor: Sensor) -> Self {
+        Choice { payload: Some(frame), ..Choice::only_friction(sensor) }
     }
 
     /// True if apparent inertias and dampings are separated from the robot's. With trusted links they would hide wrong

@@ -295,7 +295,8 @@ impl<'c, 'm> Equations<'c, 'm> {
             let w: [f64; 6] = core::array::from_fn(|i| table[6 * k + i]);
             (*frame, Wrench::from_array(w))
         }));
-        let of_row = |table: &Option<Vec<f64>>| table.as_ref().map(|table| table[k * n..(k + 1) * n].to_vec());
+        let all = n + self.columns.rotors.len();
+        let of_row = |table: &Option<Vec<f64>>| table.as_ref().map(|table| table[k * all..(k + 1) * all].to_vec());
         let friction = [of_row(&samples.coulomb), of_row(&samples.stribeck)];
         self.with_friction([theta, dtheta, ddtheta, tau], friction, A, b);
         if !self.applied.is_empty() {
@@ -331,7 +332,8 @@ impl<'c, 'm> Equations<'c, 'm> {
         b.copy_from_slice(tau);
         let shape = choice.shape();
         let of = |given: Option<Vec<f64>>, of_one: &dyn Fn(f64) -> f64| {
-            given.unwrap_or_else(|| dtheta.iter().map(|x| of_one(*x)).collect::<Vec<f64>>())
+            let speeds = dtheta.iter().copied().chain(columns.rotors.iter().map(|J| rate(J, dtheta)));
+            given.unwrap_or_else(|| speeds.map(of_one).collect::<Vec<f64>>())
         };
         let coulomb = of(coulomb, &|x| shape.coulomb(x));
         let stribeck = of(stribeck, &|x| shape.stribeck(x));
@@ -345,9 +347,8 @@ impl<'c, 'm> Equations<'c, 'm> {
                 }
                 Kind::RotorViscous(r) | Kind::RotorCoulomb(r) => {
                     let J = &columns.rotors[r];
-                    let omega = rate(J, dtheta);
                     let is_viscous = matches!(unknown.kind, Kind::RotorViscous(_));
-                    let of_rotor = if is_viscous { omega } else { shape.coulomb(omega) };
+                    let of_rotor = if is_viscous { rate(J, dtheta) } else { coulomb[n + r] };
                     (0..n).for_each(|j| A[j * P + column] = J[j] * of_rotor);
                 }
                 Kind::Stribeck(place) => {

@@ -186,6 +186,11 @@ pub fn identify<'m>(
     if estimates.consistent.is_stopped {
         findings.push(Finding::warning("stopped", "stopped before the optimum: the result is the best so far"));
     }
+    if estimates.consistent.is_astray {
+        let text = "the search for bodies that exist ended before the optimum: do not use its values; a larger --prior \
+                    helps, or limits of what is estimated";
+        findings.push(Finding::warning("astray", text));
+    }
     let mut found = Identification {
         setup,
         samples,
@@ -198,10 +203,17 @@ pub fn identify<'m>(
         findings,
         tenths,
     };
-    if !stop()
-        && let Ok((errors, fits)) = cross_validated(&found.setup, &found.logs, tenths, BLOCKS, stop)
-    {
-        (found.left_out, found.left_out_fits) = (Some(errors), fits);
+    if !stop() {
+        match cross_validated(&found.setup, &found.logs, tenths, BLOCKS, stop) {
+            Ok((errors, fits)) => (found.left_out, found.left_out_fits) = (Some(errors), fits),
+            Err(why) => {
+                let text = format!(
+                    "without each fifth of the motion in turn there is no fit ({why}): errors are those of the motion that \
+                     was fitted"
+                );
+                found.findings.push(Finding::warning("not_left_out", text));
+            }
+        }
     }
     Ok(found)
 }

@@ -71,13 +71,16 @@ fn weighed(found: &Identification<'_>) -> Option<Weighed> {
     let first = columns.index(Kind::Payload(0))?;
     let mass = optimum.x[first];
     let center = core::array::from_fn(|i| if mass > 0.0 { optimum.x[first + 1 + i] / mass } else { 0.0 });
-    Some(Weighed { frame, mass: [mass, optimum.deviations[first]], center })
+    // with how far the prior draws it from least squares
+    let deviation = optimum.deviations[first].hypot(mass - found.estimates.least_squares.x[first]);
+    Some(Weighed { frame, mass: [mass, deviation], center })
 }
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(Weighed { frame, mass: [mass, deviation], center: [x, y, z] }) = &self.payload {
-            writeln!(f, "payload: {mass:.3} kg at ({x:.3}, {y:.3}, {z:.3}) m in {frame}, ± {deviation:.3} kg")?;
+            let deviation = if *deviation < 1e-3 { format!("{deviation:.0e}") } else { format!("{deviation:.3}") };
+            writeln!(f, "payload: {mass:.3} kg at ({x:.3}, {y:.3}, {z:.3}) m in {frame}, ± {deviation} kg")?;
         }
         let which = match self.predicted {
             Predicted::OtherLog => "torques of another log",

@@ -5,12 +5,12 @@ use crate::common;
 use common::{motion, with_forces};
 use mozzi::random::Random;
 use mozzi_identify::signals::{Cutoff, Filter};
-use mozzi_identify::{Choice, Columns, Options, identify};
+use mozzi_identify::{Choice, Columns, Options, Sensor, identify};
 
 /// Largest relative error of μ, of a UR5 that reverses about once a second.
 fn error_of_mu(cutoff: f64, stribeck: Option<f64>, has_velocities: bool) -> f64 {
     let model = mozzi_urdf::open("ur5").expect("embedded").description.build().expect("sound");
-    let choice = Choice { stribeck, ..Choice::only_friction() };
+    let choice = Choice { stribeck, ..Choice::only_friction(Sensor::Link) };
     let columns = Columns::new(&model, choice.clone()).expect("columns");
     let x: Vec<f64> = columns
         .unknowns

@@ -2,15 +2,23 @@
 
 use crate::common;
 
-use common::{cases, edited, simulated};
-use mozzi::Model;
+use common::{cases, edited, floating_motion, humanoid, simulated};
+use mozzi::{Environment, Model, SO3, Vec3, Wrench};
 use mozzi_identify::judgement::judge;
-use mozzi_identify::signals::{Cutoff, Filter};
-use mozzi_identify::{Choice, Error, Log, Options, Sensor, identify};
+use mozzi_identify::signals::{Cutoff, Filter, prepare};
+use mozzi_identify::{Choice, Error, Finding, Level, Log, Options, Sensor, identify};
 
 const MISTAKES: [&str; 8] = ["swapped_joints", "sign", "unit", "scale", "gravity", "offset", "limits", "wrench"];
 
 fn codes(model: &Model, log: &Log, cutoff: f64) -> Vec<&'static str> {
+    findings(model, log, cutoff).into_iter().map(|finding| finding.code).collect()
+}
+
+fn texts(model: &Model, log: &Log, cutoff: f64) -> Vec<String> {
+    findings(model, log, cutoff).into_iter().map(|finding| finding.text).collect()
+}
+
+fn findings(model: &Model, log: &Log, cutoff: f64) -> Vec<Finding> {
     let filter = Filter { cutoff: Cutoff::Hz(cutoff), ..Filter::default() };
     // faults are warnings then
     let options = Options { filter, choice: Choice::all(Sensor::Link), trust_log: true, ..Options::default() };
@@ -21,9 +29,7 @@ fn codes(model: &Model, log: &Log, cutoff: f64) -> Vec<&'static str> {
         .iter()
         .chain(&judged.findings)
         .filter(|finding| MISTAKES.contains(&finding.code) || finding.code == "causal_filter");
-    let all: Vec<_> = all.collect();
-    all.iter().for_each(|finding| eprintln!("{finding}"));
-    all.into_iter().map(|finding| finding.code).collect()
+    all.cloned().inspect(|finding| eprintln!("{finding}")).collect()
 }
 
 #[test]
@@ -64,6 +70,21 @@ fn another_fit_reveals_mistakes() {
     let frame = model.end_effector().expect("one end");
     biased.wrenches = vec![(frame, [0.0, 1.0, 0.0, 20.0, 0.0, -10.0].repeat(log.rows()))];
     assert!(codes(&model, &biased, 8.0).contains(&"wrench"));
+    let mut opposite = edited(&log, n, |_, _, _| {});
+    let nothing = model.with_parameters(&vec![0.0; model.parameter_count()]);
+    let (zeros, mut table) = (vec![0.0; n], Vec::new());
+    for k in 0..log.rows() {
+        let x = log.t[k];
+        let F = [2.0 * (3.0 * x).sin(), 1.0, (2.0 * x).cos(), 20.0, 30.0 * x.sin(), -25.0 * (1.5 * x).cos()];
+        let applied = [(frame, Wrench::from_array(F))];
+        let around = Environment { applied: &applied, ..Environment::with_gravity(Vec3::zero()) };
+        let theta = &log.theta[k * n..][..n];
+        let JtF = nothing.inverse_dynamics(theta, &zeros, &zeros, &around).expect("lengths");
+        (0..n).for_each(|j| opposite.tau[k * n + j] += JtF[j]);
+        table.extend(F.map(|f| -f));
+    }
+    opposite.wrenches = vec![(frame, table)];
+    assert!(texts(&model, &opposite, 8.0).iter().any(|text| text.contains("wrenches seem to have the opposite sign")));
 }
 
 #[test]
@@ -204,4 +225,47 @@ fn a_stopped_search_keeps_the_best_so_far() {
     let found = identify(&model, &[log], &Options::default(), &stop).expect("an identification");
     assert!(found.estimates.consistent.is_stopped && found.findings.iter().any(|finding| finding.code == "stopped"));
     assert!(found.estimates.consistent.x.iter().all(|x| x.is_finite()));
+}
+
+/// The twist of a base in other axes, in another order, in other units, with another sign, and without a mistake.
+#[test]
+fn a_base_has_its_velocity_in_its_own_axes() {
+    let model = humanoid();
+    let (n, nq) = (model.n(), model.nq());
+    let mut log = floating_motion(&model, 8.0, 200.0, 4);
+    (log.tau, log.ddtheta) = (log.ddtheta.take().expect("accelerations"), None);
+    let filter = Filter { cutoff: Cutoff::Hz(20.0), ..Filter::default() };
+    let faults = |log: &Log| -> Vec<String> {
+        let found = prepare(&model, log, &filter).expect("samples").1;
+        let of_velocities = |one: &&Finding| one.level == Level::Fault && ["velocity", "unit"].contains(&one.code);
+        found.iter().filter(of_velocities).map(ToString::to_string).collect()
+    };
+    let with = |change: &dyn Fn(SO3, [Vec3; 2]) -> [Vec3; 2]| {
+        let mut log = log.clone();
+        let (theta, dtheta) = (&log.theta, log.dtheta.as_mut().expect("velocities"));
+        for (row, theta) in dtheta.chunks_mut(n).zip(theta.chunks(nq)) {
+            let R = SO3::from_quaternion(theta[0], Vec3([theta[1], theta[2], theta[3]]));
+            let [w, v] = change(R, [Vec3([row[0], row[1], row[2]]), Vec3([row[3], row[4], row[5]])]);
+            row[..3].copy_from_slice(&w.0);
+            row[3..6].copy_from_slice(&v.0);
+        }
+        faults(&log)
+    };
+    assert_eq!(with(&|_, V| V), Vec::<String>::new());
+    for (change, expected) in [
+        (&(|R: SO3, [w, v]: [Vec3; 2]| [w, R * v]) as &dyn Fn(SO3, [Vec3; 2]) -> [Vec3; 2], "its v is along the axes"),
+        (&|R, [w, v]| [R * w, R * v], "both its parts"),
+        (&|_, [w, v]| [v, w], "it is (v, ω);"),
+        (&|R, [w, v]| [R * v, w], "as MuJoCo has it"),
+        (&|_, [w, v]| [w, Vec3([-v.0[0], v.0[1], v.0[2]])], "its v_x has the opposite sign"),
+        (&|_, [w, v]| [w * 57.29578, v], "its ω is in deg/s"),
+    ] {
+        let found = with(change);
+        assert!(found.len() == 1 && found[0].contains(expected), "{expected}: {found:?}");
+    }
+    // the joints of a floating robot, too
+    let mut slow = log.clone();
+    let dtheta = slow.dtheta.as_mut().expect("velocities");
+    dtheta.chunks_mut(n).for_each(|row| row[6..].iter_mut().for_each(|x| *x = x.to_degrees()));
+    assert!(faults(&slow).iter().any(|text| text.contains("deg/s")), "{:?}", faults(&slow));
 }

@@ -169,12 +169,14 @@ impl MuJoCo {
     #[new]
     fn new(model: &PyModel, joints: Option<Vec<String>>) -> PyResult<Self> {
         let model = &model.robot().model;
-        let Some(names) = joints else { return Ok(MuJoCo(conventions::MuJoCo::new(model))) };
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let names: Vec<&str> = match &joints {
+            Some(names) => names.iter().map(String::as_str).collect(),
+            None => model.moving_joints().map(|joint| joint.name.as_str()).collect(),
+        };
         conventions::MuJoCo::with_joints(model, &names).map(MuJoCo).map_err(of_model)
     }
 
-    /// Index of mozzi's joint for each of MuJoCo's joints.
+    /// Index of mozzi's joint for each of MuJoCo's joints, without mimic joints.
     #[getter]
     fn joints(&self) -> Vec<usize> {
         self.0.joints().to_vec()

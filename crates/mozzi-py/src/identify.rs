@@ -112,13 +112,13 @@ fn choice(model: &Model, options: &Bound<'_, PyDict>) -> PyResult<Choice> {
     }
     let mut choice = match only.as_deref() {
         None => Choice::all(sensor),
-        Some("friction") => Choice::only_friction(),
+        Some("friction") => Choice::only_friction(sensor),
         Some("payload") => {
             let frame = match option::<String>(options, "payload")? {
                 Some(name) => model.frame(&name),
                 None => model.end_effector(),
             };
-            Choice::only_payload(frame.map_err(of_model)?)
+            Choice::only_payload(frame.map_err(of_model)?, sensor)
         }
         Some(other) => {
             return Err(PyValueError::new_err(format!("only is '{other}', expected 'payload' or 'friction'")));

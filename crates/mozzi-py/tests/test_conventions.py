@@ -89,6 +89,54 @@ def test_bridges_show_their_sizes():
     assert repr(conventions.MuJoCo(anymal)) == "<mozzi.conventions.MuJoCo: 12 joints>"
 
 
+@pytest.mark.filterwarnings("ignore::mozzi.LoadWarning")
+def test_mimic_joints_have_their_places_in_mujoco(tmp_path, random):
+    robot = mozzi.models.panda()
+    robot.save(tmp_path / "panda.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "panda.xml"))
+    data = mujoco.MjData(model)
+    theta, dtheta, ddtheta = state(robot, random)
+    for bridge in (conventions.MuJoCo(robot), conventions.MuJoCo(robot, model)):
+        data.qpos[:], data.qvel[:] = bridge.configuration(theta), bridge.velocity(theta, dtheta)
+        finger = [model.joint(f"panda_finger_joint{k}").qposadr[0] for k in (1, 2)]
+        assert data.qpos[finger[0]] == data.qpos[finger[1]] == theta[-1]
+        mujoco.mj_forward(model, data)
+        M = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, M)
+        mine, h = robot.mass_matrix(theta), robot.bias_forces(theta, dtheta)
+        assert_close(bridge.from_mass_matrix(data.qpos, M), mine, tolerance=1e-10)
+        assert_close(bridge.from_bias_forces(data.qpos, data.qvel, mine, data.qfrc_bias), h, tolerance=1e-10)
+        assert_close(bridge.from_configuration(data.qpos), theta)
+        assert_close(bridge.from_velocity(data.qpos, data.qvel), dtheta)
+        acceleration = bridge.acceleration(theta, dtheta, ddtheta)
+        assert_close(bridge.from_acceleration(data.qpos, data.qvel, acceleration), ddtheta)
+        assert_close(bridge.from_force(data.qpos, bridge.force(theta, h)), h)
+        with pytest.raises(ValueError, match="M is that of a robot with the mimic joint `panda_finger_joint2`"):
+            bridge.mass_matrix(theta, mine)
+
+
+def test_joints_without_names():
+    text = """<mujoco><worldbody><body><freejoint/><geom size=".1"/></body><body name="a"><joint name="joint3"/>
+    <joint type="slide" axis="1 0 0"/><geom size=".1"/><body pos=".3 0 0"><joint axis="0 1 0"/><geom size=".1"/></body>
+    </body></worldbody></mujoco>"""
+    robot = mozzi.Model.from_urdf_string(text, name="a.xml")
+    bridge = conventions.MuJoCo(robot, mujoco.MjModel.from_xml_string(text))
+    assert robot.joint_names == ["body1:free", "joint3", "joint2", "joint3'"]
+    assert bridge.joints == [0, 1, 2, 3]
+
+
+def test_quaternions_of_mujoco_are_normalized(random):
+    robot = mozzi.models.anymal(floating=True)
+    bridge = conventions.MuJoCo(robot)
+    theta, dtheta, _ = state(robot, random)
+    qpos = bridge.configuration(theta)
+    noisy = qpos.copy()
+    noisy[3:7] *= 1.3
+    assert_close(bridge.from_configuration(noisy), theta)
+    assert np.array_equal(bridge.from_configuration(qpos), theta)
+    assert_close(bridge.from_velocity(noisy, dtheta), bridge.from_velocity(qpos, dtheta))
+
+
 def test_errors(ur5):
     bridge = conventions.Pinocchio(ur5)
     with pytest.raises(ValueError, match="theta has 5 entries, expected 6"):

@@ -202,3 +202,32 @@ def test_a_robot_is_not_saved_as_another(tmp_path):
     with pytest.raises(ValueError, match="json can express all of it"):
         ur5.with_gravity([1.0, 0.0, -9.0]).save(tmp_path / "robot.urdf")
     assert not list(tmp_path.iterdir())
+
+
+def test_saving_tells_what_mujoco_refuses(tmp_path):
+    with pytest.warns(mozzi.LoadWarning, match="f.xml: MuJoCo refuses moving bodies whose mass or a moment is below"):
+        mozzi.models.furuta_pendulum().save(tmp_path / "f.xml")
+
+
+@pytest.mark.parametrize("last", ["hinge", "ball"])
+def test_joints_of_one_body_are_saved_as_such(tmp_path, last):
+    text = f"""<mujoco><worldbody><body name="a"><joint name="x" axis="1 0 0"/><joint name="y" type="slide"/>
+    <joint name="z" type="{last}"/><geom type="box" size=".1 .2 .3"/></body></worldbody></mujoco>"""
+    robot, file = mozzi.Model.from_urdf_string(text, name="a.xml"), tmp_path / "a.xml"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        robot.save(file)
+        again = mozzi.Model.load(file)
+    assert file.read_text().count("<body") == 1
+    assert again.joint_names == robot.joint_names and again.frames == robot.frames
+    theta = robot.neutral_configuration
+    assert np.allclose(again.mass_matrix(theta), robot.mass_matrix(theta), rtol=1e-12, atol=1e-15)
+
+
+def test_a_payload_that_cannot_be_is_a_warning(ur5):
+    with pytest.warns(mozzi.LoadWarning, match="inertia: .* 1, 1 and 5 kg m², break the triangle inequality"):
+        ur5.with_payload("tool0", np.diag([1, 1, 5, 1, 1, 1.0]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ur5.with_payload("tool0", np.diag([1, 1, 2, 1, 1, 1.0]))
+        ur5.with_payload("tool0", 2.0).with_payload("tool0", -2.0)

@@ -94,7 +94,7 @@ pub struct Played<'a> {
 /// The playground with a first robot, the embedded ones, a xacro, an MJCF and two closed loops.
 pub fn play_html(first: &Played) -> String {
     let mut robots = menu();
-    let place = embedded::names().position(|name| name == first.name && is_as_embedded(name, first.model));
+    let place = embedded::names().position(|name| name == first.name && is_as_in_file(name, first.model));
     let place = place.unwrap_or_else(|| {
         let name = first.name.rsplit(['/', '\\']).next().unwrap_or_default();
         let mut own = entry(name, first.file, first.text, false);
@@ -102,6 +102,8 @@ pub fn play_html(first: &Played) -> String {
         for (path, text) in first.included {
             own["files"][path] = json!(text);
         }
+        // whether the page's programs may open the file: an option or xacro made other robots
+        own["isAsFile"] = json!(name == first.file && is_as_in_file(first.name, first.model));
         own["meshes"] = first.drawing.meshes_to_json();
         robots.insert(0, own);
         0
@@ -118,9 +120,9 @@ fn entry(name: &str, file: &str, text: &str, is_embedded: bool) -> Value {
     json!({ "name": name, "file": file, "files": { file: text }, "isEmbedded": is_embedded, "theta": start })
 }
 
-/// True if no option changes the embedded robot.
-fn is_as_embedded(name: &str, model: &Model) -> bool {
-    mozzi_urdf::open(name).is_ok_and(|loaded| loaded.description == *model.description())
+/// True if no option changes the robot of a file, or an embedded one.
+fn is_as_in_file(name_or_path: &str, model: &Model) -> bool {
+    mozzi_urdf::open(name_or_path).is_ok_and(|loaded| loaded.description == *model.description())
 }
 
 #[cfg(test)]
@@ -180,6 +182,7 @@ mod tests {
             theta: None,
         });
         assert!(page.contains("\"first\":0") && page.contains("\"name\":\"own.json\""));
+        assert!(page.contains("\"isAsFile\":false"), "there is no such file");
         assert!(page.contains("\"parts/b.xml\":\"\\u003cmujoco/>\""), "what it includes");
     }
 

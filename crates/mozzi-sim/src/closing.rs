@@ -24,6 +24,10 @@ fn open<S: Float + Into<f64>>() -> f64 {
     (450_000.0 * S::EPSILON.into()).min(5e-5)
 }
 
+/// Closing changes no velocity by more than this part of 1 + the largest: more is no error of a step, but another
+/// branch of a mechanism that passes a change point.
+const JUMP: f64 = 0.3;
+
 /// The largest violation of the constraints along a motion, rad and m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Closing {
@@ -70,7 +74,7 @@ impl<S: Float + Into<f64>> Closer<S> {
         })
     }
 
-    /// Checks that the start satisfies the constraints, to 10⁻⁶ (`f32`: 5 · 10⁻⁵).
+    /// Checks that the start satisfies the constraints, to 10⁻⁶ (`f32`: 5 · 10⁻⁵), by half turns, too.
     ///
     /// # Errors
     /// [`Error::OpenStart`].
@@ -80,6 +84,7 @@ impl<S: Float + Into<f64>> Closer<S> {
     pub fn check_start(&mut self, model: &Model<S>, theta: &[S], dtheta: &[S]) -> Result<(), Error> {
         model.assert_lengths(theta.len(), [dtheta.len()]);
         self.rows(model, theta);
+        model.add_half_turns(theta, &mut self.phi);
         self.find_speeds(model, dtheta);
         let tolerance = open::<S>().max(1e-6);
         let bound = tolerance * largest(dtheta).max(1.0);
@@ -97,7 +102,7 @@ impl<S: Float + Into<f64>> Closer<S> {
     /// in the metric of M. t is only used in the error.
     ///
     /// # Errors
-    /// [`Error::Opened`].
+    /// [`Error::Opened`], [`Error::Jumped`].
     ///
     /// # Panics
     /// When θ is not nq long, or θ̇ not n.
@@ -143,6 +148,12 @@ impl<S: Float + Into<f64>> Closer<S> {
                 break;
             }
             change(model, &mut self.memory, &mut self.change);
+            let most = largest(&self.change);
+            if !(most <= JUMP * (1.0 + largest(dtheta))) {
+                let worst = self.change.iter().position(|&x| x.into().abs() == most).unwrap_or(0);
+                let joint = model.velocity_names().nth(worst).unwrap_or_default().into();
+                return Err(Error::Jumped { joint, change: most, time: t });
+            }
             self.corrections.velocities += 1;
             dtheta.iter_mut().zip(&self.change).for_each(|(rate, &change)| *rate += change);
         }

@@ -7,9 +7,6 @@ use crate::state::State;
 use crate::{Closing, Energy, Equation, Input, Powers};
 use mozzi::model::Model;
 
-/// Constraints are open at the start by at most this, rad or m.
-const OPEN: f64 = 1e-6;
-
 /// The equation of motion of a robot under its input, and what keeps its constraints.
 pub(crate) struct Driven<'m, I = &'m mut (dyn Input + 'm)> {
     pub model: &'m Model,
@@ -47,12 +44,6 @@ impl<'m, I: Input> Driven<'m, I> {
     /// Checks that the start satisfies the constraints, then brings it onto them.
     pub fn close_start(&mut self, theta: &mut [f64], dtheta: &mut [f64]) -> Result<(), Error> {
         let Some(closer) = &mut self.closer else { return Ok(()) };
-        // by half turns, too
-        let phi = self.model.constraint_errors(theta)?;
-        if let Some((row, x)) = phi.iter().enumerate().find(|(_, x)| !(x.abs() <= OPEN)) {
-            let (constraint, residual) = (self.model.constraint_of_row(row), x.abs());
-            return Err(Error::OpenStart { constraint, residual, what: "a position" });
-        }
         closer.check_start(self.model, theta, dtheta)?;
         closer.close(self.model, 0.0, theta, dtheta)
     }

@@ -28,6 +28,15 @@ pub enum Error {
         /// When, s.
         time: f64,
     },
+    /// Loops close only with other velocities.
+    Jumped {
+        /// The velocity that changes most.
+        joint: String,
+        /// By this much, rad/s or m/s.
+        change: f64,
+        /// When, s.
+        time: f64,
+    },
     /// The state became infinite, NaN or too large.
     Diverged {
         /// "theta", "dtheta" or "ddtheta".
@@ -108,6 +117,11 @@ impl fmt::Display for Error {
                 f,
                 "constraint `{constraint}` cannot be closed at t = {time} s: {residual:.3e} rad or m are left; the step may be too \
                  long, or the mechanism at the end of its reach"
+            ),
+            Error::Jumped { joint, change, time } => write!(
+                f,
+                "the loops close at t = {time} s only if the velocity of `{joint}` jumps by {change:.3e}: the mechanism passes a \
+                 change point, where it could go on in two ways, or the step is too long; `rk4` errs least"
             ),
             Error::Diverged { quantity, joint, value, step, time, step_size } => {
                 write!(f, "the simulation diverged: {quantity} of ")?;

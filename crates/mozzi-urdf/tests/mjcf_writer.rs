@@ -184,3 +184,39 @@ fn a_fixed_joint_follows_none() {
     let written = mjcf::write(&parse("r.urdf", text).unwrap().description).unwrap().text;
     assert!(!written.contains("<equality>"), "{written}");
 }
+
+#[test]
+fn several_joints_stay_in_one_body() {
+    let joints = |words: &[&str]| words.iter().map(|words| format!("<joint {words}/>")).collect::<String>();
+    for words in [
+        &["name='x' axis='1 0 0'", "name='y' axis='0 1 0' pos='0.1 0 0'", "name='z'"][..],
+        &["name='x' type='slide'", "name='y' type='ball' pos='0.1 0 0'"],
+        &["name='x' type='slide' axis='1 0 0'", "name='y' pos='0 0.1 0'", "name='z' type='ball'"],
+    ] {
+        let text = format!(
+            "<mujoco><worldbody><body name='a' pos='1 2 3' euler='10 20 30'>{}<geom type='box' size='.1 .2 .3'/></body>\
+             </worldbody></mujoco>",
+            joints(words)
+        );
+        let before = parse("r.xml", &text).unwrap().description;
+        let written = mjcf::write(&before).unwrap();
+        assert!(written.losses.is_empty() && written.remarks.is_empty(), "{:?} {:?}", written.losses, written.remarks);
+        assert_eq!(written.text.matches("<body").count(), 1, "{}", written.text);
+        let (after, _) = read_again(&before);
+        let names = |robot: &Description| {
+            let links = robot.links.iter().map(|link| link.name.clone());
+            links.chain(robot.joints.iter().map(|joint| joint.name.clone())).collect::<Vec<_>>()
+        };
+        assert_eq!(names(&before), names(&after));
+        let [one, two] = [before, after].map(|robot| robot.build().unwrap());
+        let [theta, dtheta, ddtheta] = state(&one, 3);
+        let [a, b] =
+            [&one, &two].map(|model| model.inverse_dynamics(&theta, &dtheta, &ddtheta, &model.environment()).unwrap());
+        assert!((&a - &b).amax() < 1e-12 * a.amax(), "{a}{b}");
+    }
+    // a ball ends the body: MuJoCo has no rotation after it
+    let text = "<mujoco><worldbody><body name='a'><joint type='ball'/><joint type='slide'/><geom size='1'/></body>\
+                </worldbody></mujoco>";
+    let written = mjcf::write(&parse("r.xml", text).unwrap().description).unwrap();
+    assert_eq!(written.text.matches("<body").count(), 2, "{}", written.text);
+}

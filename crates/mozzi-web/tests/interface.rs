@@ -1,9 +1,10 @@
 //! Robots and quantities through the interface of the page are those of the library.
 
 use mozzi::model::State;
+use mozzi::model::description::ConstraintKind;
 use mozzi::quantities::{INPUTS, LIST, Of, Query};
 use mozzi::testing::{floating_mixed_tree, four_bar, mixed_tree, state, wrench};
-use mozzi::{Description, Environment, FrameId, Freedom, Model, SE3, Vec3, Wrench};
+use mozzi::{Description, Environment, FrameId, Freedom, Model, SE3, Twist, Vec3, Wrench};
 use mozzi_urdf::json;
 use mozzi_web::{Robot, Session, drawn};
 use serde_json::{Value, json};
@@ -247,6 +248,37 @@ fn bodies_move_as_their_frames() {
         let all = |k: usize| expected.iter().flat_map(|ends| ends[k].p.0).collect::<Vec<_>>();
         assert_near("anchors", &ends, &[all(0), all(1)].concat());
     }
+}
+
+#[test]
+fn constraints_carry_what_their_multipliers_are() {
+    let model = four_bar();
+    let mut robot = opened(&model);
+    let [theta, dtheta, ddtheta] = state(&model, 8);
+    let tau: Vec<f64> = dtheta.iter().map(|x| 1.0 - 2.0 * x).collect();
+    for (name, numbers) in [("theta", &theta), ("dtheta", &dtheta), ("ddtheta", &ddtheta), ("tau", &tau)] {
+        set(&mut robot, name, numbers);
+    }
+    let found = computed(&mut robot, &json!({ "quantity": "constraint_wrenches" })).expect("wrenches");
+    let lambda = model.constraint_forces([&theta, &dtheta, &ddtheta], &tau, &model.environment()).expect("λ");
+    let rate = computed(&mut robot, &json!({ "quantity": "constraint_jacobian" })).expect("A");
+    let rates = rate.chunks(model.n()).map(|row| row.iter().zip(&dtheta).map(|(a, x)| a * x).sum::<f64>());
+    let expected: f64 = rates.zip(lambda.iter()).map(|(rate, force)| rate * force).sum();
+    // the power of each wrench on the motion of {b} relative to {a}
+    let twist = |frame: &Option<String>| match frame {
+        Some(name) => &model.space_jacobian(&theta, model.frame(name).expect("a frame")).expect("J") * &dtheta[..],
+        None => Twist::from_array([0.0; 6]),
+    };
+    let (moments, forces) = found.split_at(found.len() / 2);
+    let mut power = 0.0;
+    for (k, constraint) in model.constraints().iter().enumerate() {
+        let ConstraintKind::Frames { a, b, .. } = &constraint.kind else { panic!("anchors") };
+        let (V_a, V_b) = (twist(&a.frame), twist(&b.frame));
+        let [m, f] = [moments, forces].map(|list| Vec3(list[3 * k..][..3].try_into().expect("three")));
+        power += m.dot(V_b.w - V_a.w) + f.dot(V_b.v - V_a.v);
+    }
+    assert!(expected.abs() > 1e-3, "{expected}");
+    assert_near("power", &[power], &[expected]);
 }
 
 #[test]

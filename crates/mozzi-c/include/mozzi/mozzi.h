@@ -466,7 +466,7 @@ mozzi_status mozzi_mass_matrix_rate(const mozzi_model *model, mozzi_workspace *w
 
 /* C(θ, θ̇) of the Christoffel symbols: c = Cθ̇, and Ṁ − 2C is skew-symmetric.
  * theta (nq), rad or m; dtheta (n), rad/s or m/s.
- * Gives C (n × n), N m s or N s. */
+ * Gives C (n × n), N m s, N s or N s/m. */
 mozzi_status mozzi_coriolis_matrix(const mozzi_model *model, mozzi_workspace *workspace, const double *theta,
                                    const double *dtheta, mozzi_matrix C);
 
@@ -607,7 +607,7 @@ mozzi_status mozzi_constraint_residual(const mozzi_model *model, mozzi_workspace
 
 /* P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹: Pτ = P(Mθ̈ + h).
  * theta (nq), rad or m.
- * Gives P (n × n), 1, kg m or 1/m. */
+ * Gives P (n × n), 1, m or 1/m. */
 mozzi_status mozzi_constraint_projection(const mozzi_model *model, mozzi_workspace *workspace, const double *theta,
                                          mozzi_matrix P);
 

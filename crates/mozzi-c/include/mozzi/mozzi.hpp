@@ -876,7 +876,7 @@ class Workspace {
   }
 
   /// C(θ, θ̇) of the Christoffel symbols: c = Cθ̇, and Ṁ − 2C is skew-symmetric.
-  /// theta (nq), rad or m; dtheta (n), rad/s or m/s. Gives C (n × n), N m s or N s.
+  /// theta (nq), rad or m; dtheta (n), rad/s or m/s. Gives C (n × n), N m s, N s or N s/m.
   Status coriolis_matrix(Input theta, Input dtheta, Matrix C) noexcept {
     if (!(theta.fits("theta", sizes_.nq) && dtheta.fits("dtheta", sizes_.n) && C.fits("C", sizes_.n, sizes_.n))) {
       return Status(MOZZI_WRONG_LENGTH);
@@ -1093,7 +1093,7 @@ class Workspace {
   }
 
   /// P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹: Pτ = P(Mθ̈ + h).
-  /// theta (nq), rad or m. Gives P (n × n), 1, kg m or 1/m.
+  /// theta (nq), rad or m. Gives P (n × n), 1, m or 1/m.
   Status constraint_projection(Input theta, Matrix P) noexcept {
     if (!(theta.fits("theta", sizes_.nq) && P.fits("P", sizes_.n, sizes_.n))) {
       return Status(MOZZI_WRONG_LENGTH);

@@ -97,24 +97,35 @@ enum View {
 
 pub fn run(arguments: &PlotArguments) -> Result<String> {
     match &arguments.what {
-        What::Trajectory(arguments) => of_motion(arguments, pictures::trajectories),
-        What::Energy(arguments) => of_motion(arguments, |model, motion| {
+        What::Trajectory(arguments) => of_motion(arguments, Base::Omitted, pictures::trajectories),
+        What::Energy(arguments) => of_motion(arguments, Base::Counted, |model, motion| {
             if motion.kinetic_energy.is_none() {
                 failure::note("a motion has no dtheta: its kinetic energy is not drawn");
             }
             pictures::energy(model, motion)
         }),
-        What::Phase(arguments) => of_motion(arguments, pictures::phase),
+        What::Phase(arguments) => of_motion(arguments, Base::Omitted, pictures::phase),
         What::Convergence(arguments) => convergence(arguments),
         What::Ellipsoids(arguments) => ellipsoids(arguments),
     }
 }
 
+/// Whether a figure of a motion contains a floating base.
+#[derive(PartialEq)]
+enum Base {
+    Omitted,
+    Counted,
+}
+
 fn of_motion(
     arguments: &MotionArguments,
+    base: Base,
     draw: impl Fn(&Model, &Motion) -> std::result::Result<Figure, mozzi_report::Error>,
 ) -> Result<String> {
     let model = arguments.robot.load()?;
+    if base == Base::Omitted && model.is_floating() {
+        failure::note("the floating base is not drawn, only the joints");
+    }
     let drawn = |file: &str| {
         let motion = Motion { title: model.description().name.clone(), ..report::read(file, &model)? };
         draw(&model, &motion).map_err(|error| Failure::wrong(format!("{file}: {error}")))

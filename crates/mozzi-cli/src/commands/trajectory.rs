@@ -143,11 +143,13 @@ pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
     if let Some(file) = arguments.out.as_deref().filter(|file| *file != "-") {
         save(file, &text)?;
     }
-    match arguments.out.as_deref() {
-        Some("-") => Ok(text),
-        _ if arguments.robot.json => Ok(json::print(&object(&model, &rows, told))),
-        file => Ok(page(&model, &rows, &judged, &limits, file)),
-    }
+    let refused = !told.is_empty() && arguments.robot.is_strict();
+    let text = match arguments.out.as_deref() {
+        Some("-") => text,
+        _ if arguments.robot.json => json::print(&object(&model, &rows, told)),
+        file => page(&model, &rows, &judged, &limits, file),
+    };
+    if refused { Err(Failure::Answered(text)) } else { Ok(text) }
 }
 
 impl TrajectoryArguments {

@@ -190,6 +190,48 @@ def panels(page, job):
     return found
 
 
+def programs(page, job):
+    """The programs of a robot that is no file of the visitor's, and the file that they open."""
+    if "robot" in job:
+        page.select_option("#robot", label=job["robot"])
+        page.wait_for_function("(name) => mozzi.app.entry.name === name", arg=job["robot"])
+    if "edit" in job:
+        page.evaluate("(change) => mozzi.app.edit(change)", job["edit"])
+    page.click("#tab-code")
+    found = {"code": {}}
+    for language in ("python", "shell"):
+        page.select_option("#page-code select >> nth=0", language)
+        page.select_option("#page-code select >> nth=1", job["quantity"])
+        found["code"][language] = page.inner_text("#page-code .code")
+    page.get_by_text("Robot as JSON").click()
+    found["saved"] = page.evaluate("() => mozzi.app.saved")
+    found["shown"] = page.evaluate("(quantity) => mozzi.compute({ quantity })", job["quantity"])
+    page.evaluate("() => mozzi.app.stage.toggle('constraints', true)")
+    found["carried"] = page.evaluate("() => mozzi.app.stage.overlays.carried.map(({ visible }) => visible)")
+    return found
+
+
+def fields(page, job):
+    """What is typed into fields: a number, nothing, a mass below 0."""
+    state = lambda: [angle.input_value(), page.evaluate("() => mozzi.state().theta[1]")]
+    angle = page.locator("#page-joints input[type=number]").nth(1)
+    angle.fill("")
+    angle.press_sequentially("-1.25")
+    found = {"typed": state()}
+    angle.fill("")
+    angle.blur()
+    found["emptied"] = state()
+    page.click("#tab-edit")
+    mass = page.locator('#page-edit input[data-entry="mass"]')
+    before = mass.input_value()
+    mass.fill("-3")
+    mass.press("Enter")
+    page.wait_for_selector("#trouble:not([hidden])")
+    mass.blur()
+    found["refused"] = [before, mass.input_value()]
+    return found
+
+
 def keyboard(page, job):
     """Everything is reached by Tab; every control has a name; the tabs follow arrows; sliders move joints."""
     names = page.evaluate("""() => [...document.querySelectorAll("button, input, select, canvas, summary")]
@@ -221,7 +263,10 @@ def keyboard(page, job):
     themes = [page.evaluate(theme)]
     page.keyboard.press("d")
     themes.append(page.evaluate(theme))
-    return {"nameless": names, "seen": seen, "tab": tab, "states": [before, moved, nudged], "themes": themes, "contrast": contrast(page)}
+    page.evaluate("window.scrollTo(0, 150)")
+    page.wait_for_timeout(200)
+    tabs = page.evaluate("() => [document.getElementById('transport').getBoundingClientRect().bottom, document.getElementById('tabs').getBoundingClientRect().top]")
+    return {"nameless": names, "seen": seen, "tab": tab, "tabs": tabs, "states": [before, moved, nudged], "themes": themes, "contrast": contrast(page)}
 
 
 def stand(page, job):
@@ -295,7 +340,7 @@ def picture(page, job):
     return {}
 
 
-DO = {f.__name__: f for f in (numbers, drop_and_play, argument, wrong_file, drag, share, edit, panels, keyboard, stand, robots, frames, picture)}
+DO = {f.__name__: f for f in (numbers, drop_and_play, argument, wrong_file, drag, share, edit, panels, programs, fields, keyboard, stand, robots, frames, picture)}
 
 
 serve(DO)

@@ -10,6 +10,8 @@ const BARRIER: f64 = 1e-5;
 
 /// Newton's steps, at most, for each weight of the prior.
 const STEPS: usize = 200;
+/// Where no step is better, less than this share of the cost to gain is rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// A linear bound: Σ a x > least.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +62,17 @@ pub struct Optimum {
     pub cost: f64,
     /// Whether it was stopped before the optimum.
     pub is_stopped: bool,
+    /// Whether the search ended without the optimum: x may be far from it.
+    pub is_astray: bool,
+}
+
+/// How a search with one weight of the prior ended.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    Optimum,
+    Stopped,
+    /// In too many steps, or where no step is better.
+    Astray,
 }
 
 impl Optimum {
@@ -82,7 +95,8 @@ impl Problem {
     ///
     /// over links with pseudo-inertias Jᵢ and positive unknowns f, relative to the size that matters to the data. Jᵢ is
     /// linear in x, so the problem is convex and has one optimum. Unknowns are whitened, J = C W Cᵀ with J₀ = C Cᵀ; γ
-    /// decreases from 100 by decades, each solution the start of the next. `stop` is polled before each step.
+    /// decreases by decades from where the prior weighs as much as the data does at the start, each solution the start
+    /// of the next: a Newton step from afar would lead to the edge of the cone. `stop` is polled before each step.
     ///
     /// # Errors
     /// [`Error::Infeasible`] if a bound excludes every start; [`Error::NotExciting`] if an unknown has neither data nor
@@ -90,19 +104,20 @@ impl Problem {
     pub fn solve(&self, data: &Triangle, stop: &dyn Fn() -> bool) -> Result<Optimum, Error> {
         let newton = Newton::new(self, data);
         let mut y = newton.start()?;
-        let (mut steps, mut is_stopped) = (0, false);
-        let mut gamma = 100.0_f64.max(self.gamma);
-        loop {
+        let mut steps = 0;
+        let least = self.bodies.iter().map(|(_, _, weight)| *weight).fold(1.0, f64::min);
+        let mut gamma = (newton.cost(&y, 0.0) / least).max(100.0).max(self.gamma);
+        let end = loop {
             let is_last = gamma <= 1.01 * self.gamma;
             gamma = if is_last { self.gamma } else { gamma };
             let tolerance = if is_last { 1e-10 } else { 1e-4 };
-            is_stopped |= newton.minimize(&mut y, gamma, tolerance, &mut steps, stop)?;
-            if is_last || is_stopped {
-                break;
+            let end = newton.minimize(&mut y, gamma, tolerance, &mut steps, stop)?;
+            if is_last || end == End::Stopped {
+                break end;
             }
             gamma = (0.1 * gamma).max(self.gamma);
-        }
-        newton.optimum(y, gamma, steps, is_stopped)
+        };
+        newton.optimum(y, gamma, steps, end)
     }
 }
 
@@ -297,7 +312,7 @@ impl<'p> Newton<'p> {
         Ok(Factor { cholesky, scale })
     }
 
-    /// Damped Newton steps; true if stopped.
+    /// Damped Newton steps.
     fn minimize(
         &self,
         y: &mut DVector<f64>,
@@ -305,18 +320,19 @@ impl<'p> Newton<'p> {
         tolerance: f64,
         steps: &mut usize,
         stop: &dyn Fn() -> bool,
-    ) -> Result<bool, Error> {
+    ) -> Result<End, Error> {
         let mut cost = self.cost(y, gamma);
         for _ in 0..STEPS {
             if stop() {
-                return Ok(true);
+                return Ok(End::Stopped);
             }
             *steps += 1;
             let (g, H) = self.derivatives(y, gamma);
             let step = -self.factor(&self.H + H)?.solve(&g);
             let decrement = -g.dot(&step);
-            if !(decrement > 2.0 * tolerance * cost.abs().max(1e-12)) {
-                break;
+            let share = 0.5 * decrement / cost.abs().max(1e-12);
+            if !(share > tolerance) {
+                return Ok(End::Optimum);
             }
             let mut t = 1.0;
             loop {
@@ -328,14 +344,14 @@ impl<'p> Newton<'p> {
                 }
                 t *= 0.5;
                 if t < 1e-12 {
-                    return Ok(false); // to rounding
+                    return Ok(if share < ROUNDING { End::Optimum } else { End::Astray });
                 }
             }
         }
-        Ok(false)
+        Ok(End::Astray)
     }
 
-    fn optimum(&self, y: DVector<f64>, gamma: f64, steps: usize, is_stopped: bool) -> Result<Optimum, Error> {
+    fn optimum(&self, y: DVector<f64>, gamma: f64, steps: usize, end: End) -> Result<Optimum, Error> {
         let (_, prior) = self.derivatives(&y, gamma);
         let factor = self.factor(&self.H + &prior)?;
         // rows of T times H⁻¹: one solve for each unknown
@@ -352,7 +368,8 @@ impl<'p> Newton<'p> {
         let cost = self.cost(&y, gamma) + self.rest;
         let x: Vec<f64> = (&self.T * y).iter().copied().collect();
         let apparent = vec![0.0; self.P];
-        Ok(Optimum { x, apparent, deviations, prior_share, steps, cost, is_stopped })
+        let (is_stopped, is_astray) = (end == End::Stopped, end == End::Astray);
+        Ok(Optimum { x, apparent, deviations, prior_share, steps, cost, is_stopped, is_astray })
     }
 }
 

@@ -137,21 +137,32 @@ pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -
             condition_of_random = objective.condition(&c);
         }
         let hold = options.start.is_some();
-        for weight in [10.0, 100.0, 1000.0] {
-            let f = |c: &[f64]| {
-                let (value, mut gradient) = objective.value(c, weight);
-                for (of_joint, moves) in gradient.chunks_mut(basis.count()).zip(&moves) {
-                    let held = if *moves { usize::from(hold) } else { of_joint.len() };
-                    of_joint[..held].fill(0.0);
-                }
-                (value, gradient)
+        // a condition number has many local minima: one near the smallest ellipsoid is sought, and none worse is taken
+        let stages: &[Goal] = match options.goal {
+            Goal::LogDet => &[Goal::LogDet],
+            Goal::Condition => &[Goal::LogDet, Goal::Condition],
+        };
+        for &stage in stages {
+            objective.goal = stage;
+            for weight in [10.0, 100.0, 1000.0] {
+                let f = |c: &[f64]| {
+                    let (value, mut gradient) = objective.value(c, weight);
+                    for (of_joint, moves) in gradient.chunks_mut(basis.count()).zip(&moves) {
+                        let held = if *moves { usize::from(hold) } else { of_joint.len() };
+                        of_joint[..held].fill(0.0);
+                    }
+                    (value, gradient)
+                };
+                lbfgs::minimize(&mut c, options.iterations, 1e-5, 0.1, f, stop);
+            }
+            let is_inside = objective.shrink(&mut c, &middle);
+            let value = match options.goal {
+                Goal::LogDet => objective.value(&c, 0.0).0,
+                Goal::Condition => objective.condition(&c),
             };
-            lbfgs::minimize(&mut c, options.iterations, 1e-5, 0.1, f, stop);
-        }
-        let is_inside = objective.shrink(&mut c, &middle);
-        let value = objective.value(&c, 0.0).0;
-        if is_inside && best.as_ref().is_none_or(|(least, _)| value < *least) {
-            best = Some((value, c));
+            if is_inside && best.as_ref().is_none_or(|(least, _)| value < *least) {
+                best = Some((value, c.clone()));
+            }
         }
         if stop() {
             break;

@@ -35,6 +35,8 @@ pub(super) struct Objective<'a, 'm> {
     base: &'a BaseParameters,
     basis: &'a Basis,
     options: &'a ExciteOptions,
+    /// The one that is minimized now.
+    pub goal: Goal,
     equations: Equations<'a, 'm>,
     workspace: fast::Workspace,
     times: Vec<f64>,
@@ -56,6 +58,7 @@ impl<'a, 'm> Objective<'a, 'm> {
             base,
             basis,
             options,
+            goal: options.goal,
             equations: Equations::new(columns, &Samples::default())?,
             workspace: fast::Workspace::new(columns.model),
             times,
@@ -107,7 +110,7 @@ impl<'a, 'm> Objective<'a, 'm> {
         scaled(&mut S);
         (0..r).for_each(|k| S[(k, k)] += 1e-9);
         let eigen = S.symmetric_eigen();
-        let (value, mut G) = goal(self.options.goal, &eigen);
+        let (value, mut G) = goal(self.goal, &eigen);
         scaled(&mut G); // the derivative by the information in its own units
         let mut value = value;
         let mut gradient = vec![0.0; c.len()];

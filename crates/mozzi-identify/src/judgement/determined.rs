@@ -9,7 +9,8 @@ const THERE: f64 = 1e-9;
 /// How well the data determines one unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standing {
-    /// The standard deviation, if the data determines the unknown by itself.
+    /// The standard deviation, if the data determines the unknown by itself: with how far the identified value is from
+    /// that of least squares, which has no prior.
     pub deviation: Option<f64>,
     /// Otherwise the combinations with it that are determined, the shortest first; none if no force depends on it, or
     /// if the motion determines none of them.
@@ -45,8 +46,9 @@ pub fn standings(found: &Identification<'_>, parameters: &[Parameter]) -> Vec<St
         if let Some(row) = setup.base.columns.iter().position(|&column| column == k)
             && is_alone(row)
         {
-            let deviation = Some(parameters[row].deviation).filter(|_| !parameters[row].is_weak());
-            return Standing { deviation, only: Vec::new() };
+            let bias = found.estimates.consistent.predicting()[k] - found.estimates.least_squares.x[k];
+            let deviation = parameters[row].deviation.hypot(bias);
+            return Standing { deviation: (!parameters[row].is_weak()).then_some(deviation), only: Vec::new() };
         }
         let strong = with(k).filter(|&row| !parameters[row].is_weak());
         let mut only: Vec<String> = strong.map(|row| parameters[row].name.clone()).collect();

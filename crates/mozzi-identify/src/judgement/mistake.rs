@@ -33,6 +33,8 @@ pub enum Mistake {
     NoGravity,
     /// Measured wrenches that do not act on the robot.
     Wrench,
+    /// Measured wrenches that the robot applies.
+    WrenchSign,
 }
 
 impl Mistake {
@@ -91,7 +93,7 @@ impl Mistake {
     /// Undoes the mistake in one sample: positions, velocities and accelerations, and forces.
     pub fn undo(&self, motion: &mut [Vec<f64>; 3], tau: &mut [f64], limits: &[f64]) {
         match *self {
-            Mistake::None | Mistake::Gravity(_) | Mistake::NoGravity | Mistake::Wrench => {}
+            Mistake::None | Mistake::Gravity(_) | Mistake::NoGravity | Mistake::Wrench | Mistake::WrenchSign => {}
             Mistake::SwappedForces(a, b) => tau.swap(a, b),
             Mistake::SwappedMotions(a, b) => motion.iter_mut().for_each(|x| x.swap(a, b)),
             Mistake::SwappedJoints(a, b) => {
@@ -127,7 +129,7 @@ impl Mistake {
             Mistake::Degrees | Mistake::JointDegrees(_) | Mistake::ForceScale(..) | Mistake::Rated(_) => "unit",
             Mistake::Offset(..) => "offset",
             Mistake::Gravity(_) | Mistake::NoGravity => "gravity",
-            Mistake::Wrench => "wrench",
+            Mistake::Wrench | Mistake::WrenchSign => "wrench",
         }
     }
 
@@ -178,6 +180,11 @@ impl Mistake {
             Mistake::Wrench => {
                 "the measured wrenches seem not to act on the robot: a sensor with an offset, in another \
                                 frame, or behind the load; remove their columns"
+                    .to_string()
+            }
+            Mistake::WrenchSign => {
+                "the measured wrenches seem to have the opposite sign: what the robot applies to its \
+                                    surroundings, expected what acts on the robot"
                     .to_string()
             }
             Mistake::NoGravity => {

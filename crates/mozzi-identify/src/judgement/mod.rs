@@ -1,5 +1,6 @@
 //! How good an identification is: predictions on what was left out first, then parameters.
 
+mod base_velocity;
 pub mod determined;
 pub mod excitation;
 mod gains;
@@ -90,6 +91,7 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
         ));
     }
     findings.extend(apparent(found));
+    findings.extend(impossible(found));
     let standings = standings(found, &parameters);
     let servos = match model.configuration_space().is_flat() {
         true => servos(&names, &found.samples, &gains(found)),
@@ -148,6 +150,31 @@ fn apparent(found: &Identification<'_>) -> Option<Finding> {
     })
 }
 
+/// Forces that bodies which exist explain much worse than least squares does.
+fn impossible(found: &Identification<'_>) -> Option<Finding> {
+    /// Errors larger than those of least squares by this factor, and than this part of the forces.
+    const WORSE: (f64, f64) = (2.0, 0.01);
+    let (errors, columns) = (&found.fitted, &found.setup.columns);
+    let [exists, least] = [&errors.consistent, &errors.least_squares].map(|list| errors.normalized(list));
+    if exists < WORSE.0 * least || exists < WORSE.1 {
+        return None;
+    }
+    let mass = columns.index(Kind::Payload(0)).map(|k| found.estimates.least_squares.x[k]);
+    let why = match mass.filter(|mass| *mass < 0.0) {
+        Some(mass) => format!("a payload of {mass:.3} kg: something in the robot's file is not mounted"),
+        None => "bodies of negative mass or inertia: the robot's file, a column or a unit is wrong".into(),
+    };
+    let percent = |x: f64| 100.0 * x;
+    Some(Finding::warning(
+        "impossible_bodies",
+        format!(
+            "bodies that exist explain the forces to {:.1} %, least squares to {:.1} %, with {why}",
+            percent(exists),
+            percent(least)
+        ),
+    ))
+}
+
 /// Friction of velocities that were not logged.
 fn blunted(log: &str, samples: &Samples, columns: &Columns<'_>) -> Option<Finding> {
     let has_friction = columns.unknowns.iter().any(|unknown| matches!(unknown.kind, Kind::Coulomb(_)));
@@ -156,7 +183,7 @@ fn blunted(log: &str, samples: &Samples, columns: &Columns<'_>) -> Option<Findin
         "no_velocities",
         format!(
             "{log}: without logged velocities, the cut-off of {cutoff:.3} Hz blunts the jump of dry friction at reversals, \
-             whose μ comes out too small; log velocities, or raise --cutoff"
+             whose μ comes out too small and damping too large; log velocities, or raise --cutoff"
         ),
     ))
 }

@@ -55,7 +55,9 @@ pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option
     let mut all: Vec<Mistake> =
         (0..n).flat_map(|a| [Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a)]).collect();
     all.extend((0..n).flat_map(|a| UNITS.map(|unit| Mistake::ForceScale(a, unit))));
-    all.extend((!few.wrenches.is_empty()).then_some(Mistake::Wrench));
+    if !few.wrenches.is_empty() {
+        all.extend([Mistake::Wrench, Mistake::WrenchSign]);
+    }
     if n <= MOST_JOINTS {
         all.extend(Mistake::swaps(n));
     }
@@ -82,7 +84,7 @@ pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option
 fn thinned(samples: &Samples, n: usize) -> Samples {
     let step = samples.count().div_ceil(FITTED).max(1);
     let table = |x: &[f64], width: usize| -> Vec<f64> { x.chunks(width).step_by(step).flatten().copied().collect() };
-    let some = |x: &Option<Vec<f64>>| x.as_ref().map(|x| table(x, n));
+    let some = |x: &Option<Vec<f64>>| x.as_ref().map(|x| table(x, x.len() / samples.count().max(1)));
     Samples {
         t: table(&samples.t, 1),
         theta: table(&samples.theta, n),
@@ -105,6 +107,9 @@ fn undone(samples: &Samples, mistake: &Mistake, n: usize) -> Samples {
     if *mistake == Mistake::Wrench {
         samples.wrenches.clear();
     }
+    if *mistake == Mistake::WrenchSign {
+        samples.wrenches.iter_mut().flat_map(|(_, table)| table).for_each(|x| *x = -*x);
+    }
     for k in 0..samples.count() {
         let row = k * n..(k + 1) * n;
         let mut motion = [&samples.theta, &samples.dtheta, &samples.ddtheta].map(|x| x[row.clone()].to_vec());
@@ -114,7 +119,8 @@ fn undone(samples: &Samples, mistake: &Mistake, n: usize) -> Samples {
         samples.dtheta[row.clone()].copy_from_slice(&dtheta);
         samples.ddtheta[row.clone()].copy_from_slice(&ddtheta);
         for friction in [&mut samples.coulomb, &mut samples.stribeck].into_iter().flatten() {
-            mistake.undo_rates(&mut friction[row.clone()]);
+            let width = friction.len() / samples.t.len();
+            mistake.undo_rates(&mut friction[k * width..][..n]);
         }
     }
     samples

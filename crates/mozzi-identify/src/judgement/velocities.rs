@@ -1,12 +1,14 @@
 //! Compares logged velocities with differentiated positions: signs, units, mixed-up joints, velocities of another
 //! motion, and delays of filters that ran forwards only.
 
+use super::base_velocity;
 use super::rest::is_at_rest;
 use crate::cores::each;
 use crate::log::Rows;
 use crate::signals::butterworth::LowPass;
-use crate::signals::{derivative, resampled};
+use crate::signals::{continuous, derivative, differentiate, normalize, resampled};
 use crate::{Finding, Log};
+use mozzi::model::Place;
 use mozzi::{Freedom, Model};
 
 /// A velocity belongs to its position above this correlation.
@@ -21,8 +23,9 @@ const EARLY: f64 = 4e-3;
 /// Joints slower than this share of the fastest one are not compared.
 const SLOW: f64 = 0.02;
 
-/// Positions' derivatives, logged velocities and forces of each joint, all through the fit's low-pass filter.
+/// Positions with their derivatives, logged velocities and forces, all through the fit's low-pass filter.
 struct Signals {
+    theta: Vec<Vec<f64>>,
     /// Derivatives of positions.
     slopes: Vec<Vec<f64>>,
     logged: Vec<Vec<f64>>,
@@ -56,25 +59,35 @@ impl Signals {
         low_pass: Option<&LowPass>,
         trim: usize,
     ) -> Option<Self> {
-        let n = model.n();
+        let (n, nq) = (model.n(), model.nq());
         let run = rows.runs.iter().max_by_key(|run| run.len()).filter(|run| run.len() > 2 * trim + 20)?;
         let t: Vec<f64> = run.iter().map(|&row| log.t[row]).collect();
-        let of = |table: &[f64], j: usize, differentiates: bool| -> Vec<f64> {
-            let mut x = resampled(&t, &run.iter().map(|&row| table[row * n + j]).collect::<Vec<_>>(), rows.step);
+        let even = |table: &[f64], width: usize, k: usize| -> Vec<f64> {
+            resampled(&t, &run.iter().map(|&row| table[row * width + k]).collect::<Vec<_>>(), rows.step)
+        };
+        let filtered = |mut x: Vec<f64>| {
             if let Some(low_pass) = low_pass {
                 low_pass.filter(&mut x);
             }
-            if differentiates {
-                x = derivative(&x, rows.step);
-            }
-            let ends = trim.max(3);
-            x.get(ends..x.len().saturating_sub(ends)).unwrap_or_default().to_vec()
+            x
         };
-        let all = |table: &[f64], differentiates: bool| each(n, n * run.len(), |j| of(table, j, differentiates));
+        let ends = trim.max(3);
+        let inner = |x: Vec<f64>| x.get(ends..x.len().saturating_sub(ends)).unwrap_or_default().to_vec();
+        let all = |table: &[f64]| each(n, n * run.len(), |j| inner(filtered(even(table, n, j))));
+        let mut theta = each(nq, nq * run.len(), |k| even(&log.theta, nq, k));
+        continuous(model, &mut theta);
+        theta = each(nq, nq * run.len(), |k| filtered(theta[k].clone()));
+        normalize(model, &mut theta);
+        let mut slopes = vec![vec![0.0; theta.first().map_or(0, Vec::len)]; n];
+        for place in model.configuration_space().places().iter().filter(|place| place.freedom == Freedom::One) {
+            slopes[place.j] = derivative(&theta[place.q], rows.step);
+        }
+        differentiate(model, &theta, rows.step, &mut slopes);
         Some(Signals {
-            slopes: all(&log.theta, true),
-            logged: all(dtheta, false),
-            forces: all(&log.tau, false),
+            theta: theta.into_iter().map(inner).collect(),
+            slopes: slopes.into_iter().map(inner).collect(),
+            logged: all(dtheta),
+            forces: all(&log.tau),
             step: rows.step,
         })
     }
@@ -95,19 +108,21 @@ fn positions(log: &Log, rows: &Rows, nq: usize, q: usize) -> Vec<f64> {
 /// Faults and warnings about the velocities of a log.
 pub fn check(model: &Model, log: &Log, rows: &Rows, low_pass: Option<&LowPass>, trim: usize) -> Vec<Finding> {
     let (n, Some(dtheta)) = (model.n(), &log.dtheta) else { return Vec::new() };
-    let places = model.configuration_space().places();
-    if places.iter().any(|place| place.freedom != Freedom::One) {
-        return Vec::new();
-    }
     let Some(signals) = Signals::new(model, log, rows, dtheta, low_pass, trim) else { return Vec::new() };
     let names: Vec<&str> = model.velocity_names().collect();
     let size = |x: &[f64]| dot(x, x).sqrt();
     let fastest = signals.slopes.iter().map(|x| size(x)).fold(0.0, f64::max);
     let nq = model.nq();
-    let rests: Vec<bool> = places.iter().map(|place| is_at_rest(&positions(log, rows, nq, place.q))).collect();
-    let moves = |j: usize| size(&signals.slopes[j]) > SLOW * fastest && !rests[j];
-    let (mut findings, mut lags, mut scales, mut rough) = (Vec::new(), (0.0, 0.0), Vec::new(), Vec::new());
-    let moving: Vec<usize> = (0..n).filter(|&j| moves(j)).collect();
+    let (joints, bodies): (Vec<&Place>, Vec<&Place>) =
+        model.configuration_space().places().iter().partition(|place| place.freedom == Freedom::One);
+    let moves = |place: &&Place| {
+        size(&signals.slopes[place.j]) > SLOW * fastest && !is_at_rest(&positions(log, rows, nq, place.q))
+    };
+    let (mut lags, mut scales, mut rough) = ((0.0, 0.0), Vec::new(), Vec::new());
+    let compared = [&signals.theta[..], &signals.slopes, &signals.logged];
+    let of_body = |place: &Place| base_velocity::check(&log.name, names[place.j], place, compared, SLOW * fastest);
+    let mut findings: Vec<Finding> = bodies.into_iter().filter_map(of_body).collect();
+    let moving: Vec<usize> = joints.into_iter().filter(moves).map(|place| place.j).collect();
     let correlations = each(moving.len(), n * rows.runs.iter().map(Vec::len).sum::<usize>(), |k| {
         let (j, logged) = (moving[k], &signals.logged[moving[k]]);
         let others = moving.iter().filter(|&&i| i != j).map(|&i| (i, correlation(&signals.slopes[i], logged)));

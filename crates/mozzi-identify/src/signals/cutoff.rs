@@ -97,3 +97,15 @@ fn band_of_forces(model: &Model, log: &Log, rows: &Rows, run: &[usize], cutoff: 
     let clear = spectra.iter().filter(|spectrum| power(spectrum) > SMALL * SMALL * largest);
     clear.map(|spectrum| spectrum.band(BAND)).filter(|band| band.is_finite()).fold(0.0, f64::max)
 }
+
+/// Fewer samples are all kept.
+const MANY: usize = 100_000;
+
+/// Samples in a period of the cut-off that are kept.
+const PER_PERIOD: f64 = 20.0;
+
+/// A filtered signal is known from every k-th row; this k.
+pub fn stride(rows: usize, rate: f64, cutoff: Option<f64>) -> usize {
+    let most = cutoff.map_or(1.0, |cutoff| rate / (PER_PERIOD * cutoff));
+    (rows / MANY).clamp(1, (most as usize).max(1))
+}

@@ -10,10 +10,10 @@ use crate::cores::each;
 use crate::judgement::velocities;
 use crate::log::Rows;
 use crate::mend::mend;
-use crate::{Error, Finding, Level, Log};
+use crate::{Error, Finding, Level, Log, rotors};
 use butterworth::LowPass;
 use mozzi::{FrameId, Freedom, Model, SpatialInertia};
-use quaternions::{continuous, normalize};
+pub(crate) use quaternions::{continuous, differentiate, normalize};
 use smoothing_spline::SmoothingSpline;
 
 /// Where the low-pass filter's gain is ½.
@@ -100,9 +100,10 @@ pub struct Samples {
     pub ddtheta: Vec<f64>,
     /// N × n.
     pub tau: Vec<f64>,
-    /// N × n: tanh(θ̇/w) of unfiltered velocities, filtered as the forces; None if velocities were not measured.
+    /// N × (n + rotors that several joints turn): tanh(θ̇/w) of unfiltered velocities, filtered as the forces; None if
+    /// velocities were not measured.
     pub coulomb: Option<Vec<f64>>,
-    /// N × n: the same of Stribeck's friction.
+    /// Likewise Stribeck's friction.
     pub stribeck: Option<Vec<f64>>,
     /// N × n: target positions, if they were logged.
     pub target: Option<Vec<f64>>,
@@ -161,7 +162,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     rows.bridge(&log, cutoff, &mut findings);
     let two_periods = cutoff.map_or(0.0, |f| (2.0 * rate / f).ceil());
     let trim = two_periods as usize; // what the ends of a filtered run are worth
-    let stride = stride(rows.runs.iter().map(Vec::len).sum(), rate, cutoff);
+    let stride = cutoff::stride(rows.runs.iter().map(Vec::len).sum(), rate, cutoff);
     if stride > 1 {
         let what =
             format!("{}: one of {stride} filtered rows is fitted, {:.0} a second", log.name, rate / stride as f64);
@@ -197,18 +198,6 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     let N = samples.count() as f64;
     samples.removed.iter_mut().for_each(|sum| *sum /= N);
     Ok((samples, findings))
-}
-
-/// Fewer samples are all kept.
-const MANY: usize = 100_000;
-
-/// Samples in a period of the cut-off that are kept.
-const PER_PERIOD: f64 = 20.0;
-
-/// A filtered signal is known from every k-th row; this k.
-fn stride(rows: usize, rate: f64, cutoff: Option<f64>) -> usize {
-    let most = cutoff.map_or(1.0, |cutoff| rate / (PER_PERIOD * cutoff));
-    (rows / MANY).clamp(1, (most as usize).max(1))
 }
 
 /// Linear interpolation at even times.
@@ -275,9 +264,11 @@ impl Part<'_> {
             self.smooth(&times, &mut x);
             x
         };
+        let turned = rotors::signals(self.model, &dtheta);
         let shaped = |to: &mut Option<Vec<f64>>, of: &(dyn Fn(f64) -> f64 + Sync)| {
+            let speed = |k: usize| dtheta.get(k).unwrap_or_else(|| &turned[k - n]);
             if let Some(to) = to {
-                store(to, all(n, &|k| smooth(dtheta[k].iter().map(|x| of(*x)).collect())));
+                store(to, all(n + turned.len(), &|k| smooth(speed(k).iter().map(|x| of(*x)).collect())));
             }
         };
         shaped(&mut samples.coulomb, &|x| shape.coulomb(x));
@@ -348,11 +339,8 @@ impl Part<'_> {
     fn velocities(&self, times: &[f64], theta: &[Vec<f64>], raw: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let (model, step) = (self.model, self.rows.step);
         let (n, N) = (model.n(), times.len());
-        let space = model.configuration_space();
-        let at = |k: usize| -> Vec<f64> { theta.iter().map(|x| x[k]).collect() };
         let mut found = vec![vec![0.0; N]; n];
-        let mut difference = vec![0.0; n];
-        for place in space.places() {
+        for place in model.configuration_space().places() {
             if place.freedom == Freedom::One {
                 found[place.j] = match (self.filter.acceleration, self.cutoff) {
                     (Acceleration::Spline, Some(cutoff)) => SmoothingSpline::new(times, &raw[place.q], cutoff).first,
@@ -360,15 +348,7 @@ impl Part<'_> {
                 };
             }
         }
-        if space.places().iter().any(|place| place.freedom != Freedom::One) {
-            for k in 0..N {
-                let (before, after) = (k.saturating_sub(1), (k + 1).min(N - 1));
-                space.difference(&at(before), &at(after), &mut difference);
-                for place in space.places().iter().filter(|place| place.freedom != Freedom::One) {
-                    place.velocities().for_each(|j| found[j][k] = difference[j] / ((after - before) as f64 * step));
-                }
-            }
-        }
+        differentiate(model, theta, step, &mut found);
         found
     }
 

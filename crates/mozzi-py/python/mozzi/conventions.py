@@ -106,7 +106,7 @@ def MuJoCo(robot: Model, model: Optional[Any] = None) -> _MuJoCo:
     robot : Model
         The robot.
     model : mujoco.MjModel, optional
-        MuJoCo's model of the robot, whose joint order is used. Default: mozzi's order.
+        MuJoCo's model of the robot, whose joint order is used. Default: mozzi's order, with mimic joints.
 
     Returns
     -------
@@ -115,16 +115,20 @@ def MuJoCo(robot: Model, model: Optional[Any] = None) -> _MuJoCo:
         `mass_matrix(theta, M)`, `bias_forces(theta, dtheta, M, h)` to MuJoCo; `from_configuration(qpos)`,
         `from_velocity(qpos, qvel)`, `from_acceleration(qpos, qvel, qacc)`, `from_force(qpos, qfrc)`,
         `from_mass_matrix(qpos, M)`, `from_bias_forces(qpos, qvel, M, qfrc_bias)` back; M of the bias forces is
-        mozzi's in both directions.
+        mozzi's in both directions. A mimic joint has its places in MuJoCo's lists: they are filled, forces with 0, and
+        on the way back its forces and its inertia are added to the joint that it follows; M and h of such a robot are
+        converted from MuJoCo only. Quaternions in `qpos` are normalized, as in MuJoCo.
     """
     if model is None:
         return _MuJoCo(robot, None)
     free = 0  # mjJNT_FREE; of a floating base it is no joint
-
-    def name(j: int) -> str:
-        given = cast(str, model.joint(j).name)
-        unnamed = given == "" and model.jnt_type[j] == free
-        return f"{model.body(model.jnt_bodyid[j]).name}:free" if unnamed else given
-
-    joints = [j for j in range(model.njnt) if model.jnt_type[j] != free or not robot.is_floating]
-    return _MuJoCo(robot, [name(j) for j in joints])
+    names = [cast(str, model.joint(j).name) for j in range(model.njnt)]
+    for j in range(model.njnt):
+        if names[j] == "":  # named as in `Model.from_mjcf`
+            body = model.jnt_bodyid[j]
+            is_free = model.jnt_type[j] == free
+            generated = f"{model.body(body).name or f'body{body}'}:free" if is_free else f"joint{j}"
+            while generated in names:
+                generated += "'"
+            names[j] = generated
+    return _MuJoCo(robot, [names[j] for j in range(model.njnt) if model.jnt_type[j] != free or not robot.is_floating])

@@ -83,9 +83,9 @@ impl PyModel {
     /// >>> import mozzi
     /// >>> arm = mozzi.models.two_link_planar()
     /// >>> tip = arm.end_effector
-    /// >>> rail = {"name": "rod", "kind": "distance", "length": 1.5, "a": {"frame": None}, "b": {"frame": tip}}
-    /// >>> held = arm.with_constraints([rail])
-    /// >>> held.constraints[0]["kind"], held.constraint_rank([0.3, 0.5]).freedom
+    /// >>> rod = {"name": "rod", "kind": "distance", "length": 0.8, "a": {"frame": None}, "b": {"frame": tip}}
+    /// >>> held = arm.with_constraints([rod])
+    /// >>> held.constraints[0]["kind"], held.constraint_rank(held.assemble([0.3, 0.5])).freedom
     /// ('distance', 1)
     #[pyo3(signature = (constraints, *, motors=None))]
     fn with_constraints(&self, constraints: &Bound<'_, PyAny>, motors: Option<Vec<String>>) -> PyResult<Self> {

@@ -2,11 +2,13 @@
 
 use crate::array::Numbers;
 use crate::describe::{pose, refused};
+use crate::failure::LoadWarning;
 use crate::model::PyModel;
 use mozzi::SpatialInertia;
 use mozzi::model::Base;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::ffi::CString;
 
 #[pymethods]
 impl PyModel {
@@ -17,7 +19,8 @@ impl PyModel {
     /// frame : str
     ///     A link or frame.
     /// inertia : float, or array_like of shape (6, 6)
-    ///     Mass of a point at the frame's origin, kg, or spatial inertia in the frame: kg m², kg m, kg.
+    ///     Mass of a point at the frame's origin, kg, or spatial inertia in the frame: kg m², kg m, kg. One that no
+    ///     body has is used with a warning, as in a robot's file.
     ///
     /// Returns
     /// -------
@@ -29,7 +32,7 @@ impl PyModel {
     /// >>> ur5 = mozzi.models.ur5()
     /// >>> round(ur5.with_payload("tool0", 2.0).mass - ur5.mass, 9)
     /// 2.0
-    fn with_payload(&self, frame: &str, inertia: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn with_payload(&self, py: Python<'_>, frame: &str, inertia: &Bound<'_, PyAny>) -> PyResult<Self> {
         let inertia = match inertia.extract::<f64>() {
             Ok(mass) => SpatialInertia::point_mass(mass, mozzi::Vec3([0.0; 3])),
             Err(_) => {
@@ -37,7 +40,14 @@ impl PyModel {
                 SpatialInertia::from_matrix(G).map_err(refused)?
             }
         };
-        Self::built(self.robot().model.with_payload(self.frame(Some(frame))?, inertia))
+        let loaded = Self::built(self.robot().model.with_payload(self.frame(Some(frame))?, inertia))?;
+        let verdict = inertia.verdict();
+        if inertia.mass >= 0.0 && !verdict.is_physical() {
+            // a negative mass takes a payload away
+            let text = CString::new(format!("inertia: {verdict}")).map_err(refused)?;
+            PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 1)?;
+        }
+        Ok(loaded)
     }
 
     /// Return a copy with an additional frame at a pose relative to an existing one.
@@ -145,7 +155,7 @@ impl PyModel {
     ///
     /// Raises
     /// ------
-    /// ModelError
+    /// ValueError
     ///     If the name is taken, or a joint does not exist.
     ///
     /// Examples

@@ -118,6 +118,8 @@ impl PyModel {
     }
 
     /// Maximum torque or force of each joint, shape (joints,), N m or N; infinite without a limit.
+    ///
+    /// They are the file's limits of the joints; ranges of MJCF's actuators (ctrlrange, forcerange) are not read.
     #[getter]
     fn effort_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let limits = self.robot().model.joints().map(|joint| joint.limits.effort.unwrap_or(f64::INFINITY));

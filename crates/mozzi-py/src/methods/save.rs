@@ -46,7 +46,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// ValueError
-    ///     If the format cannot express the robot. Smaller losses are warnings.
+    ///     If the format cannot express the robot. Smaller losses, and what MuJoCo or Gazebo refuse, are warnings.
     ///
     /// Examples
     /// --------
@@ -60,10 +60,10 @@ impl PyModel {
         let model = &self.robot().model;
         let model = model.described().and_then(|robot| robot.build()).map_err(of_model)?;
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let Written { text, losses, .. } = written(ending, &model)?;
+        let Written { text, losses, remarks } = written(ending, &model)?;
         std::fs::write(&path, text)?;
-        for loss in losses {
-            let text = format!("{} cannot express {loss}", path.display());
+        let losses = losses.into_iter().map(|loss| format!("{} cannot express {loss}", path.display()));
+        for text in losses.chain(remarks.into_iter().map(|remark| format!("{}: {remark}", path.display()))) {
             let text = CString::new(text.replace('\0', "\\0")).map_err(refused)?;
             PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 1)?;
         }

@@ -59,9 +59,11 @@ fn linear([low, high]: [f64; 2], about: f64) -> Vec<(f64, String)> {
     let first = (low / step).ceil() as i64;
     let decimals = (-step.log10()).ceil().max(0.0) as usize;
     let name = |x: f64| match (1e-4..1e5).contains(&step) {
-        true => format!("{x:.decimals$}").replace('-', "−"),
-        false => format!("{x:.1e}"),
+        true => format!("{x:.decimals$}"),
+        false if x == 0.0 => "0".to_string(),
+        false => format!("{x:.1e}").replace(".0e", "e"),
     };
+    let name = |x: f64| name(x).replace('-', "−");
     (first..).map(|k| k as f64 * step).take_while(|x| *x <= high).map(|x| (x, name(x))).collect()
 }
 
@@ -122,7 +124,8 @@ mod tests {
             |scale, range, about| Ticks::new(scale, range, about).0.into_iter().map(|(_, n)| n).collect::<Vec<_>>();
         assert_eq!(names(Scale::Linear, [-0.1, 1.1], 5), ["0.0", "0.5", "1.0"]);
         assert_eq!(names(Scale::Linear, [-3.0, 7.0], 5), ["−2", "0", "2", "4", "6"]);
-        assert_eq!(names(Scale::Linear, [0.0, 3e-7], 3), ["0.0e0", "1.0e-7", "2.0e-7", "3.0e-7"]);
+        assert_eq!(names(Scale::Linear, [0.0, 3e-7], 3), ["0", "1e−7", "2e−7", "3e−7"]);
+        assert_eq!(names(Scale::Linear, [-6e-16, 6e-16], 3), ["−5e−16", "0", "5e−16"]);
         assert_eq!(names(Scale::Logarithmic, [-3.2, 0.1], 4), ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
         // two at least
         assert_eq!(names(Scale::Linear, [3.1, 4.9], 1), ["3.5", "4.0", "4.5"]);

@@ -83,7 +83,9 @@ impl Midpoint {
             match self.part(&state, part, then, driven) {
                 Ok(to) if is_last => return Ok(to),
                 Ok(to) => state = to,
-                Err(Error::NoConvergence { .. } | Error::Opened { .. }) if part > SHORTEST * h => {
+                Err(Error::NoConvergence { .. } | Error::Opened { .. } | Error::Jumped { .. })
+                    if part > SHORTEST * h =>
+                {
                     self.restart();
                     length = 0.5 * part;
                 }

@@ -284,7 +284,7 @@ impl Moreau {
 
 /// True for errors that a shorter step may avoid.
 fn is_too_long(error: &Error) -> bool {
-    matches!(error, Error::Opened { .. } | Error::Diverged { .. })
+    matches!(error, Error::Opened { .. } | Error::Jumped { .. } | Error::Diverged { .. })
 }
 
 /// The speed below which a joint is at rest.

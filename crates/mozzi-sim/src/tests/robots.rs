@@ -5,7 +5,7 @@ use mozzi::testing;
 use mozzi::{Description, Model, SE3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 
 /// A hinge about −y, so that positive angles swing a body that hangs along −z towards +x.
-fn swing() -> JointKind {
+pub fn swing() -> JointKind {
     JointKind::Screw(ScrewAxis::new([0.0, -1.0, 0.0], [0.0; 3]).expect("unit"))
 }
 

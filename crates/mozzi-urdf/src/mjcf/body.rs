@@ -8,7 +8,6 @@ use super::geom::Mass;
 use super::orientation::{pose, to_z, unit};
 use super::tree::{Link, Name, Site};
 use super::{attributes::Item, vocabulary};
-use crate::report::finding::Finding;
 use crate::report::places::Place;
 use crate::text::context::Context;
 use crate::text::element::Element;
@@ -54,13 +53,15 @@ impl<'a> Model<'a> {
         element.check_attributes(&vocabulary::BODY, cx);
         element.check_children(&vocabulary::BODY, cx);
         let class = self.classes.named(&element, "childclass", inside.around.class, cx);
-        let mut origin = inside.T * pose(&item, &self.compiler, cx);
+        let own = pose(&item, &self.compiler, cx);
+        let mut origin = inside.T * own;
         let T = carrier.T * origin;
         let compensation = item.number("gravcomp", 0.0, cx);
         if compensation != 0.0 {
             self.ignored.force("gravcomp", &item, "gravcomp", "gravity compensation");
         }
-        if item.flag("mocap", false, cx) {
+        let is_mocap = item.flag("mocap", false, cx);
+        if is_mocap {
             self.ignored.force("mocap", &item, "mocap", "a prescribed motion");
         }
         let mut contents = Contents::default();
@@ -73,7 +74,7 @@ impl<'a> Model<'a> {
         }
         let is_free = self.free(&contents, carrier.link, &name.shown(), origin, cx);
         let is_static = carrier.is_static && contents.joints.is_empty() && !is_free;
-        let inertia = self.inertia(&element, &contents, &mut place, is_static, cx);
+        let inertia = self.inertia(&element, &contents, own.p, &mut place, is_static, cx);
         // joints act one after the other, the first at the parent; between them are massless links
         let mut parent = carrier.link;
         let count = contents.joints.len();
@@ -83,7 +84,8 @@ impl<'a> Model<'a> {
             if i + 1 < count {
                 let name = Name::generated(format!("{}:{}", name.shown(), read));
                 let place = Place::new(joint.item.element.span());
-                self.tree.links.push(Link { name, inertia: SpatialInertia::zero(), compensation: 0.0, place });
+                let (inertia, compensation) = (SpatialInertia::zero(), 0.0);
+                self.tree.links.push(Link { name, inertia, compensation, is_mocap: false, place });
             }
             (parent, origin) = (child, SE3::identity());
         }
@@ -92,7 +94,7 @@ impl<'a> Model<'a> {
             let fixed = Name::generated(format!("{}:fixed", name.shown()));
             self.tree.joint(fixed, [parent, link], origin, Place::new(element.span()));
         }
-        self.tree.links.push(Link { name, inertia, compensation, place });
+        self.tree.links.push(Link { name, inertia, compensation, is_mocap, place });
         self.draw(&contents.geoms, link, is_static.then_some(T));
         self.rest(contents, Carrier { link, is_static, T, depth: carrier.depth + 1 }, cx);
     }
@@ -136,11 +138,13 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// The inertia of a body in its frame: given, or the sum of its geoms'.
+    /// The inertia of a body in its frame: given, or the sum of its geoms'. If there is neither, boundmass puts its
+    /// mass, as in MuJoCo, at the point `p` of the body's frame, the `pos` that places the body in its parent.
     fn inertia(
         &mut self,
         element: &Element<'a>,
         contents: &Contents<'a>,
+        p: Vec3,
         place: &mut Place,
         is_static: bool,
         cx: &mut Context,
@@ -172,26 +176,11 @@ impl<'a> Model<'a> {
             }
         }
         // without a geom that has a mass the given inertia remains
-        let inertia = match given {
-            Some(given) if is_given || sum.mass == 0.0 => given,
-            _ if is_given => SpatialInertia::zero(),
-            _ => sum,
+        let (inertia, center) = match given {
+            Some((given, center)) if is_given || sum.mass == 0.0 => (given, center),
+            _ if is_given || sum.mass == 0.0 => (SpatialInertia::zero(), p),
+            _ => (sum, sum.center_of_mass()),
         };
-        self.bounded(inertia, element)
-    }
-
-    /// Scales all bodies to the compiler's settotalmass.
-    pub fn scale_to_total_mass(&mut self, cx: &mut Context) {
-        let Some(total) = self.compiler.main.total_mass else { return };
-        let mass: f64 = self.tree.links.iter().map(|link| link.inertia.mass).sum();
-        if !(mass > 0.0) {
-            let message = format!("compiler: settotalmass: the bodies' total mass {mass} cannot be scaled to {total}");
-            cx.findings.add(Finding::error("no_mass", self.tree.links[0].place.span(""), message));
-            return;
-        }
-        let k = total / mass;
-        for SpatialInertia { mass, mc, I } in self.tree.links.iter_mut().map(|link| &mut link.inertia) {
-            (*mass, *mc, *I) = (*mass * k, *mc * k, *I * k);
-        }
+        self.bounded(inertia, center, element)
     }
 }

@@ -49,6 +49,8 @@ pub(crate) struct Compiler {
     /// True if the folders in the names of mesh files are dropped.
     pub strips: bool,
     pub total_mass: Option<f64>,
+    /// True if MuJoCo merges bodies without joints into their parents.
+    pub fuses: bool,
 }
 
 impl Compiler {
@@ -67,6 +69,7 @@ impl Compiler {
             fit_aabb: false,
             strips: false,
             total_mass: None,
+            fuses: false,
         };
         for section in sections {
             compiler.take(&Item::plain(&section.called("compiler")), cx);
@@ -104,6 +107,7 @@ impl Compiler {
         self.align_free = item.flag("alignfree", self.align_free, cx);
         self.balance = item.flag("balanceinertia", self.balance, cx);
         self.strips = item.flag("strippath", self.strips, cx);
+        self.fuses = item.flag("fusestatic", self.fuses, cx);
         self.fit_aabb = item.flag("fitaabb", self.fit_aabb, cx);
         match item.word("inertiafromgeom", &["auto", "true", "false"], cx) {
             Some("true") => self.from_geoms = FromGeoms::Always,

@@ -8,13 +8,13 @@ use crate::report::finding::Finding;
 use crate::report::places::Place;
 use crate::text::context::Context;
 use crate::text::element::Element;
-use mozzi::SpatialInertia;
 use mozzi::linalg::Sym3;
+use mozzi::{SpatialInertia, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 impl Model<'_> {
-    /// The inertia in the body's frame.
-    pub fn inertial(&self, item: &Item, place: &mut Place, cx: &mut Context) -> SpatialInertia {
+    /// The inertia in the body's frame, and the centre of mass, which a mass of 0 has too.
+    pub fn inertial(&self, item: &Item, place: &mut Place, cx: &mut Context) -> (SpatialInertia, Vec3) {
         item.element.check_attributes(&vocabulary::INERTIAL, cx);
         item.element.check_children(&vocabulary::INERTIAL, cx);
         let T = pose(item, &self.compiler, cx);
@@ -54,11 +54,11 @@ impl Model<'_> {
             place.turned = Some(T.R);
             Sym3::diagonal(x, y, z).congruence(T.R.matrix())
         };
-        SpatialInertia::new(mass, T.p, I)
+        (SpatialInertia::new(mass, T.p, I), T.p)
     }
 
-    /// The inertia after the compiler's bounds and balancing, if set.
-    pub fn bounded(&self, given: SpatialInertia, body: &Element) -> SpatialInertia {
+    /// The inertia after the compiler's bounds and balancing, if set; `center` is the centre of mass.
+    pub fn bounded(&self, given: SpatialInertia, center: Vec3, body: &Element) -> SpatialInertia {
         let compiler = self.compiler.of(body);
         let (bound, mass) = (compiler.bound_inertia, given.mass.max(compiler.bound_mass));
         let verdict = given.verdict();
@@ -85,11 +85,50 @@ impl Model<'_> {
             let (xx, xy, xz) = (entry(0, 0), entry(0, 1), entry(0, 2));
             I = Sym3 { xx, xy, xz, yy: entry(1, 1), yz: entry(1, 2), zz: entry(2, 2) };
         }
-        let raised = SpatialInertia::new(mass, given.center_of_mass(), I);
+        let raised = SpatialInertia::new(mass, center, I);
         if compiler.balance && !raised.verdict().is_physical() {
             let mean = I.trace() / 3.0;
-            return SpatialInertia::new(mass, given.center_of_mass(), Sym3::diagonal(mean, mean, mean));
+            return SpatialInertia::new(mass, center, Sym3::diagonal(mean, mean, mean));
         }
         raised
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    /// M of the first joint, with the bounds of MuJoCo's table below.
+    fn first(bodies: &str) -> f64 {
+        let compiler = "<compiler boundmass='0.3' boundinertia='0.01'/>";
+        let text = format!("<mujoco>{compiler}<worldbody>{bodies}</worldbody></mujoco>");
+        let model = crate::parse("a.xml", &text).unwrap_or_else(|error| panic!("{error}")).description.build();
+        let model = model.expect("sound");
+        model.mass_matrix(&model.neutral_configuration::<f64>()).expect("M")[(0, 0)]
+    }
+
+    #[test]
+    fn a_bounded_mass_without_a_place_is_where_mujoco_puts_it() {
+        let joint = "<joint axis='0 0 1' pos='0.5 0 0'/>";
+        let body = |pose: &str, rest: &str| format!("<body name='a' {pose}>{joint}{rest}</body>");
+        let at = "pos='1 2 3'";
+        // MuJoCo 4.0's mj_fullM
+        for (bodies, expected) in [
+            (body(at, ""), 1.285),
+            (body("pos='1 2 3' euler='30 20 10'", ""), 1.285),
+            (format!("<frame pos='1 0 0' euler='0 90 0'>{}</frame>", body(at, "")), 1.285),
+            (body(at, "<geom size='.1' mass='0' pos='0 0 .2'/>"), 1.285),
+            (body(at, "<geom size='.1' mass='1e-10' pos='0 0 .2'/>"), 0.085),
+            (body(at, "<inertial pos='0.1 0 0' mass='0' diaginertia='0 0 0'/>"), 0.058),
+            (body(at, "<geom size='.1' mass='4'/><body pos='1 0 0'/>"), 4.0 * 0.25 + 0.016 + 0.3 * 2.25 + 0.01),
+            (
+                body(at, "<geom size='.1' mass='4'/><body pos='1 0 0' euler='0 0 90'/>"),
+                4.0 * 0.25 + 0.016 + 0.3 * 1.25 + 0.01,
+            ),
+        ] {
+            assert!((first(&bodies) - expected).abs() < 1e-9, "{bodies}: {}, expected {expected}", first(&bodies));
+        }
+        // about the world's x-axis, of a free body that carries another one
+        let free = "<body name='a' pos='1 2 3' euler='0 0 45'><freejoint/><body pos='1 0 0'><geom size='.1' mass='4'/>\
+                    </body></body>";
+        assert!((first(free) - (0.3 * 13.0 + 0.01 + 0.016)).abs() < 1e-9, "{}", first(free));
     }
 }

@@ -76,6 +76,7 @@ mod schema;
 mod shapes;
 mod shell;
 mod spring;
+mod total_mass;
 mod tree;
 mod vocabulary;
 mod write;
@@ -252,7 +253,7 @@ fn read_model<'a>(
     for worldbody in of("worldbody") {
         model.world(worldbody, cx);
     }
-    model.scale_to_total_mass(cx);
+    model.scale_to_total_mass(root, cx);
     model.closures(&sections, cx);
     model.leave_the_world();
     let keys = Key::read(of("keyframe"), cx);

@@ -48,6 +48,8 @@ pub(crate) struct Link {
     pub inertia: SpatialInertia,
     /// The part of its weight that is compensated.
     pub compensation: f64,
+    /// True for a mocap body.
+    pub is_mocap: bool,
     pub place: Place,
 }
 
@@ -129,6 +131,7 @@ impl Tree {
             name: Name { given: Some("world".to_string()), otherwise: String::new() },
             inertia: SpatialInertia::zero(),
             compensation: 0.0,
+            is_mocap: false,
             place: Place::new(root.span()),
         };
         let place = Place::new(root.span());

@@ -25,9 +25,10 @@ pub struct Drawn {
 }
 
 /// All of them.
-pub const LIST: [&Drawn; 6] = [
+pub const LIST: [&Drawn; 7] = [
     &motion::BODY_MOTION,
     &anchors::CONSTRAINT_ANCHORS,
+    &anchors::CONSTRAINT_WRENCHES,
     &ellipsoid::VELOCITY_ELLIPSOID,
     &coordinates::COORDINATES,
     &coordinates::CONFIGURATION,

@@ -5,6 +5,7 @@ use super::wrench_of;
 use crate::SE3;
 use crate::model::{End, Environment, Error, Model, TieKind};
 use crate::quantities as q;
+use crate::scalar::Scalar;
 use crate::spatial::Wrench;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -91,10 +92,12 @@ impl Model<f64> {
         self.check_configuration(theta)?;
         Ok(self.anchors(theta))
     }
+}
 
-    pub(super) fn anchors(&self, theta: &[f64]) -> Vec<[SE3; 2]> {
+impl<S: Scalar> Model<S> {
+    pub(super) fn anchors(&self, theta: &[S]) -> Vec<[SE3<S>; 2]> {
         let poses = self.link_poses(theta);
-        let of = |end: &End<f64>| end.slot.map_or(SE3::identity(), |slot| poses[slot]) * end.T;
+        let of = |end: &End<S>| end.slot.map_or(SE3::identity(), |slot| poses[slot]) * end.T;
         let anchors = self.ties.list.iter().filter_map(|tie| match &tie.kind {
             TieKind::Frames { a, b, .. } => Some([of(a), of(b)]),
             TieKind::Joint { .. } => None,
@@ -103,9 +106,9 @@ impl Model<f64> {
     }
 
     /// The configurations of the normal frames of all slots in {s}.
-    fn link_poses(&self, theta: &[f64]) -> Vec<SE3> {
+    fn link_poses(&self, theta: &[S]) -> Vec<SE3<S>> {
         let mut poses = alloc::vec![crate::kinematics::base_pose(self, theta)];
-        for (_, link) in self.outward::<f64>() {
+        for (_, link) in self.outward::<S>() {
             let T = poses[link.parent] * link.transform(theta).inverse();
             poses.push(T);
         }

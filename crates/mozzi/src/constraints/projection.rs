@@ -58,7 +58,7 @@ impl Quantity for ConstraintProjection {
         "constraint_projection",
         "P(θ) = 1 − Aᵀ(A M⁻¹Aᵀ)⁻¹A M⁻¹: Pτ = P(Mθ̈ + h)",
         &[THETA],
-        &[output("P", MATRIX, "1, kg m or 1/m")],
+        &[output("P", MATRIX, "1, m or 1/m")],
     )
     .is_constrained()
     .at_rest()

@@ -4,7 +4,7 @@ use super::constraint_jacobian;
 use crate::linalg::Vec3;
 use crate::model::description::Closure;
 use crate::model::{Error, Model, TieKind};
-use crate::scalar::Scalar;
+use crate::scalar::{Real, Scalar};
 use crate::workspace::Workspace;
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -32,13 +32,46 @@ impl<C: Scalar> Model<C> {
     }
 }
 
+impl<C: Real> Model<C> {
+    /// Writes into the kernel's φ what is open by a half turn: see [`Model::constraint_errors`].
+    #[doc(hidden)] // a start of mozzi-sim's is judged by it
+    pub fn add_half_turns(&self, theta: &[C], phi: &mut [C]) {
+        let number = C::from_f64;
+        let frames = self.ties.list.iter().filter_map(|tie| match &tie.kind {
+            TieKind::Frames { closure, .. } => Some((tie.first, *closure)),
+            TieKind::Joint { .. } => None,
+        });
+        for ((first, closure), [a, b]) in frames.zip(self.anchors(theta)) {
+            let R = (a.inverse() * b).R;
+            let angles = &mut phi[first..];
+            match closure {
+                Closure::Weld => {
+                    let (s, v) = R.quaternion();
+                    if s < number(HALF_TURN) {
+                        angles[..3].copy_from_slice(&(v * number(2.0)).0);
+                    }
+                }
+                Closure::Hinge => {
+                    let [x, y, z] = (R * Vec3([C::zero(), C::zero(), C::one()])).0;
+                    if z < C::zero() {
+                        let (across, size) = ((x * x + y * y).sqrt(), (number(2.0) * (C::one() - z)).sqrt());
+                        let axis = if across > C::zero() { [-y / across, x / across] } else { [C::one(), C::zero()] };
+                        angles[..2].copy_from_slice(&axis.map(|c| c * size));
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
 impl Model<f64> {
     /// A, Ȧθ̇ and φ at a state whose lengths were checked.
     pub(crate) fn constraint_rows_at(&self, theta: &[f64], dtheta: &[f64]) -> Rows {
         let (m, n) = (self.constraint_rows(), self.n());
         let (mut A, mut bias, mut phi) = (vec![0.0; m * n], vec![0.0; m], vec![0.0; m]);
         constraint_jacobian(self, theta, dtheta, &mut Workspace::new(self), &mut A, &mut bias, &mut phi);
-        self.note_half_turns(theta, &mut phi);
+        self.add_half_turns(theta, &mut phi);
         Rows { A: DMatrix::from_row_slice(m, n, &A), bias: DVector::from_vec(bias), phi: DVector::from_vec(phi) }
     }
 
@@ -50,34 +83,6 @@ impl Model<f64> {
     pub fn constraint_errors(&self, theta: &[f64]) -> Result<DVector<f64>, Error> {
         self.check_configuration(theta)?;
         Ok(self.constraint_rows_at(theta, &vec![0.0; self.n()]).phi)
-    }
-
-    fn note_half_turns(&self, theta: &[f64], phi: &mut [f64]) {
-        let frames = self.ties.list.iter().filter_map(|tie| match &tie.kind {
-            TieKind::Frames { closure, .. } => Some((tie.first, *closure)),
-            TieKind::Joint { .. } => None,
-        });
-        for ((first, closure), [a, b]) in frames.zip(self.anchors(theta)) {
-            let R = (a.inverse() * b).R;
-            let angles = &mut phi[first..];
-            match closure {
-                Closure::Weld => {
-                    let (s, v) = R.quaternion();
-                    if s < HALF_TURN {
-                        angles[..3].copy_from_slice(&(v * 2.0).0);
-                    }
-                }
-                Closure::Hinge => {
-                    let [x, y, z] = (R * Vec3([0.0, 0.0, 1.0])).0;
-                    if z < 0.0 {
-                        let (across, size) = (Scalar::sqrt(x * x + y * y), Scalar::sqrt(2.0 * (1.0 - z)));
-                        let axis = if across > 0.0 { [-y / across, x / across] } else { [1.0, 0.0] };
-                        angles[..2].copy_from_slice(&axis.map(|c| c * size));
-                    }
-                }
-                _ => {}
-            }
-        }
     }
 
     /// The indices of the velocities of the joints with these names.

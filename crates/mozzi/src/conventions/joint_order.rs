@@ -84,13 +84,13 @@ impl JointOrder {
 
     /// A bilinear form on velocities, such as M, in the other's order.
     pub fn matrix_to(&self, what: &'static str, mine: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-        self.check_matrix(what, mine)?;
+        check_square(what, mine, self.n())?;
         Ok(DMatrix::from_fn(self.n(), self.n(), |i, j| mine[(self.velocity(i), self.velocity(j))]))
     }
 
     /// The inverse of [`matrix_to`](Self::matrix_to).
     pub fn matrix_from(&self, what: &'static str, theirs: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-        self.check_matrix(what, theirs)?;
+        check_square(what, theirs, self.n())?;
         let mut mine = DMatrix::zeros(self.n(), self.n());
         for i in 0..self.n() {
             (0..self.n()).for_each(|j| mine[(self.velocity(i), self.velocity(j))] = theirs[(i, j)]);
@@ -102,15 +102,15 @@ impl JointOrder {
     pub fn velocity(&self, k: usize) -> usize {
         self.velocities[k]
     }
+}
 
-    pub fn check_matrix(&self, what: &'static str, matrix: &DMatrix<f64>) -> Result<(), Error> {
-        let (n, (rows, columns)) = (self.n(), matrix.shape());
-        check_length(what, rows * columns, n * n)?;
-        if rows == n {
-            return Ok(());
-        }
-        Err(Error::BadArgument { what, found: format!("{rows} × {columns}"), expected: "a square matrix" })
+pub(super) fn check_square(what: &'static str, matrix: &DMatrix<f64>, n: usize) -> Result<(), Error> {
+    let (rows, columns) = matrix.shape();
+    check_length(what, rows * columns, n * n)?;
+    if rows == n {
+        return Ok(());
     }
+    Err(Error::BadArgument { what, found: format!("{rows} × {columns}"), expected: "a square matrix" })
 }
 
 pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), Error> {

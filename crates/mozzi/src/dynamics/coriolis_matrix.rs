@@ -122,7 +122,7 @@ impl Quantity for CoriolisMatrix {
         "coriolis_matrix",
         "C(θ, θ̇) of the Christoffel symbols: c = Cθ̇, and Ṁ − 2C is skew-symmetric",
         &[THETA, DTHETA],
-        &[output("C", MATRIX, "N m s or N s")],
+        &[output("C", MATRIX, "N m s, N s or N s/m")],
     );
 }
 #[doc(hidden)]

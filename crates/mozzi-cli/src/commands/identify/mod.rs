@@ -272,14 +272,14 @@ impl IdentifyArguments {
     }
 
     fn options(&self, model: &Model) -> Result<Options> {
-        let sensor = if self.torque == Torque::Motor { Sensor::Motor } else { Sensor::Link };
+        let sensor = if self.torque == Torque::Link { Sensor::Link } else { Sensor::Motor };
         let frame = || match &self.payload {
             Some(name) => model.frame(name),
             None => model.end_effector(),
         };
         let mut choice = match self.only {
-            Some(Only::Friction) => Choice::only_friction(),
-            Some(Only::Payload) => Choice::only_payload(frame()?),
+            Some(Only::Friction) => Choice::only_friction(sensor),
+            Some(Only::Payload) => Choice::only_payload(frame()?, sensor),
             None => Choice::all(sensor),
         };
         choice.gains = self.torque == Torque::Current;

@@ -13,7 +13,7 @@ pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
         .collect();
     losses.extend(names_of("the names of fixed joints", &fixed));
     let merged: Vec<&str> = (d.joints.iter())
-        .filter(|joint| plan.next(joint).is_some_and(|next| joint.child != format!("{}:{}", next.child, joint.name)))
+        .filter(|joint| plan.body_of(joint).is_some_and(|body| joint.child != format!("{body}:{}", joint.name)))
         .map(|joint| joint.child.as_str())
         .collect();
     losses.extend(names_of("links without mass between joints", &merged));

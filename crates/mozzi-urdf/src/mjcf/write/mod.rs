@@ -110,14 +110,24 @@ impl<'d> Plan<'d> {
         found
     }
 
-    /// The joint after a link without mass and frames, which MuJoCo could not have between two joints.
+    /// The joint after a link without mass and frames, which MuJoCo could not have between two joints. A ball is the
+    /// last one.
     fn next(&self, joint: &Joint) -> Option<&'d Joint> {
         let link = self.links.get(joint.child.as_str()).filter(|link| link.inertia == SpatialInertia::zero())?;
         let &[next] = self.below.get(link.name.as_str())?.as_slice() else { return None };
-        let both = [joint, next].iter().all(|joint| matches!(joint.kind, JointKind::Screw(_)));
+        let both = matches!((joint.kind, next.kind), (JointKind::Screw(_), JointKind::Screw(_) | JointKind::Ball(_)));
         let has_frame = self.d.frames.iter().any(|frame| frame.link == link.name)
             || self.sites.iter().any(|site| site.link == Some(&link.name));
         (both && !has_frame).then_some(next)
+    }
+
+    /// The body whose joint this is, if a joint follows it there.
+    fn body_of(&self, joint: &Joint) -> Option<&'d str> {
+        let mut last = self.next(joint)?;
+        while let Some(next) = self.next(last) {
+            last = next;
+        }
+        Some(&last.child)
     }
 }
 

@@ -120,3 +120,92 @@ fn what_does_not_fit_is_an_error_that_says_so() {
     assert!(said(mujoco.velocity(&nothing, &dtheta)).contains("of length 0, expected a unit quaternion"));
     assert!(mujoco.from_mass_matrix(&theta, &DMatrix::zeros(3, 3)).is_err());
 }
+
+#[test]
+fn mimic_joints_have_entries_if_they_are_named() {
+    for (model, seed) in [(tree(4, 7, 2), 1), (floating_tree(4, 7, 2), 2), (floating_mixed_tree(5, 9, 2), 3)] {
+        let [theta, dtheta, ddtheta] = state(&model, seed);
+        let mut names: Vec<&str> = model.moving_joints().map(|joint| joint.name.as_str()).collect();
+        names.reverse();
+        let short: Vec<&str> =
+            names.iter().copied().filter(|name| model.joint_names().any(|one| one == *name)).collect();
+        let count = names.len() - short.len();
+        assert!(count > 0);
+        let [to, plain] = [&names, &short].map(|names| MuJoCo::with_joints(&model, names).expect("its joints"));
+        let first = model.base().velocities();
+        let qpos = to.configuration(&theta).expect("nq");
+        let (qvel, qacc) =
+            (to.velocity(&theta, &dtheta).expect("n"), to.acceleration(&theta, &dtheta, &ddtheta).expect("n"));
+        assert_eq!([qpos.len(), qvel.len()], [theta.len() + count, dtheta.len() + count]);
+        // each follower's entries are those of its source
+        let offset = |k: usize, of: fn(&Freedom) -> usize| -> usize {
+            let freedom = |name: &&str| {
+                model.joint_names().position(|one| one == *name).map_or(Freedom::One, |j| model.places()[j].freedom)
+            };
+            names[..k].iter().map(|name| of(&freedom(name))).sum()
+        };
+        for (joint, source) in model.moving_joints().zip(model.sources()).filter(|(joint, _)| joint.mimic.is_some()) {
+            let k = names.iter().position(|name| *name == joint.name).expect("named");
+            let (place, base) = (model.places()[source.joint], model.base().positions());
+            let q = base + offset(k, |freedom| freedom.positions());
+            let v = first + offset(k, |freedom| freedom.velocities());
+            assert_eq!(qpos[q], source.ratio * theta[place.q] + source.offset);
+            assert_eq!([qvel[v], qacc[v]], [source.ratio * dtheta[place.j], source.ratio * ddtheta[place.j]]);
+        }
+        let qpos = qpos.as_slice();
+        assert_eq!(to.from_configuration(qpos).expect("nq").as_slice(), theta);
+        let there = plain.configuration(&theta).expect("nq");
+        let same = |a: DVector<f64>, b: DVector<f64>| assert!((&a - &b).amax() < 1e-13 * (1.0 + a.amax()), "{a}{b}");
+        let short_qvel = plain.velocity(&theta, &dtheta).expect("n");
+        same(
+            to.from_velocity(qpos, qvel.as_slice()).expect("n"),
+            plain.from_velocity(there.as_slice(), short_qvel.as_slice()).expect("n"),
+        );
+        same(
+            to.from_acceleration(qpos, qvel.as_slice(), qacc.as_slice()).expect("n"),
+            DVector::from_column_slice(&ddtheta),
+        );
+        let qfrc = to.force(&theta, &ddtheta).expect("n");
+        same(to.from_force(qpos, qfrc.as_slice()).expect("n"), DVector::from_column_slice(&ddtheta));
+        // any forces have the same power, any matrix the same energy
+        let forces = Random(7).vector(qvel.len(), 1.0);
+        let tau = to.from_force(qpos, &forces).expect("n");
+        let power = tau.dot(&DVector::from_column_slice(&dtheta));
+        assert!((power - DVector::from_column_slice(&forces).dot(&qvel)).abs() < 1e-12);
+        let A = DMatrix::from_column_slice(qvel.len(), qvel.len(), &Random(8).vector(qvel.len().pow(2), 1.0));
+        let theirs = &A * A.transpose();
+        let mine = to.from_mass_matrix(qpos, &theirs).expect("n");
+        let dtheta = DVector::from_column_slice(&dtheta);
+        let (one, other) = (dtheta.dot(&(mine * &dtheta)), qvel.dot(&(theirs * &qvel)));
+        assert!((one - other).abs() < 1e-12 * other, "{one} {other}");
+        let M = model.mass_matrix(&theta).expect("M");
+        let said = to.mass_matrix(&theta, &M).expect_err("a row is missing");
+        assert!(alloc::format!("{said}").starts_with("M is that of a robot with the mimic joint `joint"), "{said}");
+        assert!(to.bias_forces(&theta, dtheta.as_slice(), &M, tau.as_slice()).is_err());
+        let twice: Vec<&str> = names.iter().chain(&names).copied().collect();
+        assert!(MuJoCo::with_joints(&model, &twice).is_err());
+    }
+}
+
+#[test]
+fn quaternions_of_qpos_are_normalized() {
+    let model = floating_mixed_tree(5, 9, 0);
+    let (mujoco, [theta, dtheta, _]) = (MuJoCo::new(&model), state(&model, 1));
+    let qpos = mujoco.configuration(&theta).expect("nq");
+    let (mut long, mut at) = (qpos.clone(), 0);
+    for place in model.configuration_space().places() {
+        let quaternion = match place.freedom {
+            Freedom::Free => at + 3..at + 7,
+            Freedom::Ball => at..at + 4,
+            Freedom::One => at..at,
+        };
+        quaternion.for_each(|k| long[k] *= 1.7);
+        at += place.freedom.positions();
+    }
+    assert!(long != qpos);
+    let close = |a: DVector<f64>, b: DVector<f64>| assert!((a - b).amax() < 1e-14);
+    close(mujoco.from_configuration(long.as_slice()).expect("nq"), DVector::from_column_slice(&theta));
+    let [a, b] = [&long, &qpos].map(|qpos| mujoco.from_velocity(qpos.as_slice(), &dtheta).expect("n"));
+    close(a, b);
+    assert_eq!(turns::normalized([0.0; 4]), [1.0, 0.0, 0.0, 0.0]);
+}

@@ -2,12 +2,25 @@
 
 use crate::lie::{SE3, SO3};
 use crate::linalg::Vec3;
+use crate::scalar::Scalar;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 /// A configuration relative to a frame at T, expressed in the frame in which T is given.
 pub(super) fn seen(pose: [f64; 7], T: Option<SE3>) -> [f64; 7] {
     T.map_or(pose, |T| (T * SE3::from_pose(pose)).to_pose())
+}
+
+/// A quaternion as MuJoCo reads it: of length 1 (to the bit if it is, up to rounding), and no rotation if its length is
+/// 0.
+pub(super) fn normalized(q: [f64; 4]) -> [f64; 4] {
+    /// MuJoCo's mjMINVAL.
+    const LEAST: f64 = 1e-15;
+    let length = Scalar::sqrt(q.iter().map(|x| x * x).sum::<f64>());
+    if length < LEAST {
+        return [1.0, 0.0, 0.0, 0.0];
+    }
+    if (length - 1.0).abs() > LEAST { q.map(|x| x / length) } else { q }
 }
 
 /// The inverse rotations.
