@@ -50,6 +50,10 @@ fn simulated_logs_with_a_mistake_say_which() {
     assert!(codes(&model, &slow, 8.0).contains(&"unit"));
     let wall = model.with_gravity([0.0, -9.81, 0.0]).expect("finite");
     assert!(codes(&wall, &edited(&log, n, |_, _, _| {}), 8.0).contains(&"gravity"));
+    // by half a radian about y
+    let tilted = model.with_gravity([9.81 * 0.5_f64.sin(), 0.0, -9.81 * 0.5_f64.cos()]).expect("finite");
+    let found = texts(&tilted, &edited(&log, n, |_, _, _| {}), 8.0);
+    assert!(found.iter().any(|text| text.contains("gravity seems to be (") && text.contains(", -9.8")), "{found:?}");
 }
 
 /// A joint whose own forces are small, an encoder's zero, a sensor's offset: the file alone hardly shows them.

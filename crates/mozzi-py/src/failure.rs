@@ -1,8 +1,10 @@
 //! Converts errors of Rust to errors of Python with the same message.
 
+use pyo3::PyTypeInfo;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyArithmeticError, PyOSError, PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
+use std::ffi::CString;
 
 create_exception!(
     mozzi,
@@ -38,6 +40,12 @@ create_exception!(
 The goal is out of reach, the path breaks or leaves the robot's reach, a motor is too weak, or nothing limits the
 speed."
 );
+
+/// A warning; `level` 1 points to the caller's line, 2 to the line that called it.
+pub fn warn<Category: PyTypeInfo>(py: Python<'_>, text: &str, level: i32) -> PyResult<()> {
+    let text = CString::new(text.replace('\0', "\\0")).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    PyErr::warn(py, &py.get_type::<Category>(), &text, level)
+}
 
 /// An error of the library, or of a simulation.
 pub fn of_model(error: impl Into<mozzi_sim::Error>) -> PyErr {

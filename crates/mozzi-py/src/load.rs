@@ -1,8 +1,8 @@
 //! Loads robots from files, texts, names and the book's lists.
 
 use crate::array::{Numbers, wrong_shape};
-use crate::describe::{pose, refused};
-use crate::failure::{DynamicsWarning, LoadWarning, of_loader, of_model};
+use crate::describe::pose;
+use crate::failure::{DynamicsWarning, LoadWarning, of_loader, of_model, warn};
 use mozzi::model::Base;
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia};
 use mozzi_urdf::json;
@@ -10,7 +10,6 @@ use mozzi_urdf::{Consequence, LoadError, Loaded, Policy, Settings, XacroArgument
 use pyo3::exceptions::{PyFileNotFoundError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
-use std::ffi::CString;
 use std::path::PathBuf;
 
 fn policy(name: &str) -> PyResult<Policy> {
@@ -32,12 +31,10 @@ pub fn loaded(py: Python<'_>, name_or_path: &str, how: &str) -> PyResult<Result<
 pub fn build(py: Python<'_>, loaded: Result<Loaded, LoadError>, floating: bool) -> PyResult<Model> {
     let loaded = loaded.map_err(|error| of_loader(py, error))?;
     for warning in &loaded.warnings {
-        let text = CString::new(warning.to_string().replace('\0', "\\0")).map_err(refused)?;
-        let category = match warning.consequence() {
-            Consequence::Motion => py.get_type::<DynamicsWarning>(),
-            _ => py.get_type::<LoadWarning>(),
-        };
-        PyErr::warn(py, &category, &text, 2)?;
+        match warning.consequence() {
+            Consequence::Motion => warn::<DynamicsWarning>(py, &warning.to_string(), 2)?,
+            _ => warn::<LoadWarning>(py, &warning.to_string(), 2)?,
+        }
     }
     let model = loaded.build().map_err(|error| of_loader(py, error))?;
     if floating { model.with_base(Base::Floating).map_err(of_model) } else { Ok(model) }

@@ -197,6 +197,12 @@ def test_positions_after_velocities_and_back(robot, random):
         assert_close(robot.integrate(theta, robot.difference(theta, later)), later, 5.0)
         for quaternion in later[:4], later[7:11]:
             assert abs(np.linalg.norm(quaternion) - 1) < 1e-15
+    later = robot.integrate(thetas, dthetas, 0.5)
+    assert (later == [robot.integrate(*pair, 0.5) for pair in zip(thetas, dthetas)]).all()
+    assert robot.difference(thetas[0], later.reshape(1, 5, -1)).shape == (1, 5, robot.n)
+    assert robot.integrate(thetas[:0], dthetas[:0]).shape == (0, robot.nq)
+    with pytest.raises(ValueError, match="leading axes"):
+        robot.difference(thetas[:2], later[:3])
     with pytest.raises(ValueError, match="dtheta has shape"):
         robot.integrate(thetas[0], [0, 1])
     with pytest.raises(ValueError, match="theta1 has shape"):

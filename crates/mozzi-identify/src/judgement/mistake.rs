@@ -119,6 +119,11 @@ impl Mistake {
         }
     }
 
+    /// Gravity along no axis.
+    pub fn is_tilt(&self) -> bool {
+        matches!(self, Mistake::Gravity(g) if g.iter().filter(|x| x.abs() > 1e-9).count() > 1)
+    }
+
     /// The finding's code.
     pub fn code(&self) -> &'static str {
         match self {
@@ -175,7 +180,11 @@ impl Mistake {
                 if whole < 500.0 { "per cent" } else { "per mille" }
             ),
             Mistake::Gravity(g) => {
-                format!("gravity seems to be {g:?} m/s² in the base frame, not {:?}", model.gravity().0)
+                let shown = |g: [f64; 3]| g.map(|x| format!("{:.3}", x + 0.0)).join(", ");
+                let (found, own) = (shown(g), shown(model.gravity().0));
+                format!(
+                    "gravity seems to be ({found}) m/s² in the base frame, not ({own}): --gravity is the flag for it"
+                )
             }
             Mistake::Wrench => {
                 "the measured wrenches seem not to act on the robot: a sensor with an offset, in another \

@@ -5,7 +5,7 @@ use super::mistake::Mistake;
 use crate::signals::{Cutoff, Filter, Samples, prepare};
 use crate::{Error, Finding, Level, Log};
 use mozzi::quantities::{InverseDynamics, Query};
-use mozzi::{Environment, Model, Vec3, fast};
+use mozzi::{Environment, Model, SO3, Vec3, fast};
 
 /// The logarithms of the joints' squared errors must fall by this much in all before a mistake is reported.
 const CLEAR: f64 = 1.5;
@@ -22,6 +22,12 @@ const APART: f64 = 0.5;
 
 /// Above this share the file predicts so badly that no robot of this file has recorded the log.
 const ABSURD: f64 = 10.0;
+
+/// A base that leaves more than this share of the variance unexplained may be tilted,
+const GOOD: f64 = 0.01;
+
+/// by an angle that is sought in these steps, rad; a smaller one than the second number is none.
+const TILTS: ([f64; 5], f64) = ([0.4, 0.2, 0.1, 0.05, 0.02], 0.05);
 
 /// Samples that are compared.
 const COMPARED: usize = 400;
@@ -69,9 +75,12 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
     let names: Vec<&str> = model.velocity_names().collect();
     let mut comparison = Comparison::new(model, samples);
     let as_it_is = comparison.score(&Mistake::None);
+    let share = |score: f64| (score / names.len() as f64).exp();
     let most = comparison.most();
+    let tilt = if share(as_it_is) > GOOD { comparison.tilt() } else { None };
     let all: Vec<(Mistake, f64)> = Mistake::all(model, comparison.limits.is_some(), &most)
         .into_iter()
+        .chain(tilt)
         .filter_map(|mistake| {
             let (score, without) = comparison.scores(&mistake);
             // what friction and armature explain alone is no evidence
@@ -82,7 +91,6 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
     let (best, least) = first.filter(|(_, score)| *score < as_it_is).unwrap_or((Mistake::None, as_it_is));
     let of_other_kind = all.iter().filter(|(mistake, _)| mistake.code() != best.code()).map(|(_, score)| *score);
     let is_apart = of_other_kind.fold(f64::MAX, f64::min) - least > APART;
-    let share = |score: f64| (score / names.len() as f64).exp();
     let evidence = |score: f64| {
         format!(
             "then the robot's own values leave {:.2} % of each force's variance unexplained, now {:.2} % (geometric means)",
@@ -111,7 +119,9 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
     let gain = as_it_is - least;
     Ok(match () {
         () if gain > CLEAR && is_explained && is_apart => {
-            let level = if gain > SURE { Level::Fault } else { Level::Warning };
+            // a tilt has two numbers that are fitted
+            let is_sure = gain > SURE && !best.is_tilt();
+            let level = if is_sure { Level::Fault } else { Level::Warning };
             let text = format!("{log}: {}; {}", best.text(model), evidence(least));
             vec![Finding { code: best.code(), level, text }]
         }
@@ -172,6 +182,28 @@ impl<'a> Comparison<'a> {
         self.sums(mistake)
             .iter()
             .fold((0.0, 0.0), |(with, without), fit| (with + log(fit.unexplained()), without + log(fit.without())))
+    }
+
+    /// The direction of gravity that explains the forces best, if it is another than the robot's.
+    fn tilt(&mut self) -> Option<Mistake> {
+        let own = self.model.gravity();
+        let (mut g, mut least) = (own, self.score(&Mistake::None));
+        for step in TILTS.0 {
+            let mut moves = own.norm() > 0.0;
+            while moves {
+                moves = false;
+                for turn in [0, 1, 2].into_iter().flat_map(|axis| [(axis, step), (axis, -step)]) {
+                    let mut w = Vec3::zero();
+                    w.0[turn.0] = turn.1;
+                    let next = SO3::exp(w) * g;
+                    let score = self.score(&Mistake::Gravity(next.0));
+                    if score < least - 1e-3 {
+                        (g, least, moves) = (next, score, true);
+                    }
+                }
+            }
+        }
+        ((g - own).norm() > TILTS.1 * own.norm()).then_some(Mistake::Gravity(g.0))
     }
 
     /// Whether nearly nothing is left once the mistake is undone.

@@ -2,13 +2,12 @@
 
 use crate::array::Numbers;
 use crate::describe::{pose, refused};
-use crate::failure::LoadWarning;
+use crate::failure::{LoadWarning, warn};
 use crate::model::PyModel;
 use mozzi::SpatialInertia;
 use mozzi::model::Base;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::ffi::CString;
 
 #[pymethods]
 impl PyModel {
@@ -44,8 +43,7 @@ impl PyModel {
         let verdict = inertia.verdict();
         if inertia.mass >= 0.0 && !verdict.is_physical() {
             // a negative mass takes a payload away
-            let text = CString::new(format!("inertia: {verdict}")).map_err(refused)?;
-            PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 1)?;
+            warn::<LoadWarning>(py, &format!("inertia: {verdict}"), 1)?;
         }
         Ok(loaded)
     }

@@ -1,9 +1,45 @@
 //! Positions are a manifold: ⊕ and ⊖.
 
-use crate::array::list;
+use crate::array::{Numbers, common_leading, wrong_shape};
 use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use pyo3::prelude::*;
+
+/// Lists of these lengths, by their common leading axes.
+struct Pairs<'py> {
+    lists: [Numbers<'py>; 2],
+    lengths: [usize; 2],
+    leading: Vec<usize>,
+}
+
+impl<'py> Pairs<'py> {
+    fn new(given: [(&'static str, &Bound<'py, PyAny>, usize); 2]) -> PyResult<Self> {
+        let [a, b] = given.map(|(name, given, _)| Numbers::new(name, given));
+        let (mut lists, lengths) = ([a?, b?], given.map(|(.., length)| length));
+        for (list, length) in lists.iter().zip(lengths) {
+            if list.shape.last() != Some(&length) {
+                return Err(wrong_shape(list.name, &list.shape, format!("(..., {length})")));
+            }
+        }
+        let leading = common_leading(lists.iter().map(|list| (list.name, list.leading(1))))?;
+        lists.iter_mut().try_for_each(|list| list.spread::<f64>(&leading, 1))?;
+        Ok(Pairs { lists, lengths, leading })
+    }
+
+    /// A list for each pair, of `length` numbers.
+    fn each(
+        &self,
+        py: Python<'py>,
+        length: usize,
+        of_one: impl Fn([&[f64]; 2]) -> PyResult<Vec<f64>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let [a, b] = [self.lists[0].slice::<f64>()?, self.lists[1].slice::<f64>()?];
+        let row = |list: usize, k: usize| k * self.lengths[list]..(k + 1) * self.lengths[list];
+        let all = (0..self.leading.iter().product()).map(|k| of_one([&a[row(0, k)], &b[row(1, k)]]));
+        let all = all.collect::<PyResult<Vec<_>>>()?;
+        array(py, &[&self.leading[..], &[length]].concat(), all.into_iter().flatten())
+    }
+}
 
 #[pymethods]
 impl PyModel {
@@ -14,16 +50,16 @@ impl PyModel {
     ///
     /// Parameters
     /// ----------
-    /// theta : array_like, shape (nq,)
+    /// theta : array_like, shape (..., nq)
     ///     Positions: rad or m.
-    /// dtheta : array_like, shape (n,)
+    /// dtheta : array_like, shape (..., n)
     ///     Velocities: rad/s or m/s.
     /// h : float
     ///     Time, s.
     ///
     /// Returns
     /// -------
-    /// numpy.ndarray, shape (nq,)
+    /// numpy.ndarray, shape (..., nq)
     ///     Positions: rad or m.
     ///
     /// Raises
@@ -40,16 +76,18 @@ impl PyModel {
     fn integrate<'py>(
         &self,
         py: Python<'py>,
-        theta: &Bound<'_, PyAny>,
-        dtheta: &Bound<'_, PyAny>,
+        theta: &Bound<'py, PyAny>,
+        dtheta: &Bound<'py, PyAny>,
         h: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = &self.robot().model;
-        let mut theta = list("theta", theta, &[model.nq()])?;
-        let dtheta = list("dtheta", dtheta, &[model.n()])?;
-        model.check_configuration(&theta).map_err(of_model)?;
-        mozzi::model::integrate(model, &mut theta, &dtheta, h);
-        array(py, &[theta.len()], theta)
+        let pairs = Pairs::new([("theta", theta, model.nq()), ("dtheta", dtheta, model.n())])?;
+        pairs.each(py, model.nq(), |[theta, dtheta]| {
+            model.check_configuration(theta).map_err(of_model)?;
+            let mut theta = theta.to_vec();
+            mozzi::model::integrate(model, &mut theta, dtheta, h);
+            Ok(theta)
+        })
     }
 
     /// Compute θ₁ ⊖ θ₀, the constant velocities from θ₀ to θ₁ in one second; the inverse of `integrate`.
@@ -58,12 +96,12 @@ impl PyModel {
     ///
     /// Parameters
     /// ----------
-    /// theta0, theta1 : array_like, shape (nq,)
+    /// theta0, theta1 : array_like, shape (..., nq)
     ///     Positions: rad or m.
     ///
     /// Returns
     /// -------
-    /// numpy.ndarray, shape (n,)
+    /// numpy.ndarray, shape (..., n)
     ///     Velocities: rad/s or m/s.
     ///
     /// Raises
@@ -79,15 +117,16 @@ impl PyModel {
     fn difference<'py>(
         &self,
         py: Python<'py>,
-        theta0: &Bound<'_, PyAny>,
-        theta1: &Bound<'_, PyAny>,
+        theta0: &Bound<'py, PyAny>,
+        theta1: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let model = &self.robot().model;
-        let theta0 = list("theta0", theta0, &[model.nq()])?;
-        let theta1 = list("theta1", theta1, &[model.nq()])?;
-        [&theta0, &theta1].into_iter().try_for_each(|theta| model.check_configuration(theta)).map_err(of_model)?;
-        let mut difference = vec![0.0; model.n()];
-        mozzi::model::difference(model, &theta0, &theta1, &mut difference);
-        array(py, &[difference.len()], difference)
+        let pairs = Pairs::new([("theta0", theta0, model.nq()), ("theta1", theta1, model.nq())])?;
+        pairs.each(py, model.n(), |both| {
+            both.into_iter().try_for_each(|theta| model.check_configuration(theta)).map_err(of_model)?;
+            let mut difference = vec![0.0; model.n()];
+            mozzi::model::difference(model, both[0], both[1], &mut difference);
+            Ok(difference)
+        })
     }
 }

@@ -1,7 +1,7 @@
 //! HTML report of a robot and its motion.
 
 use crate::array::list;
-use crate::failure::{LoadWarning, of_loader};
+use crate::failure::{LoadWarning, of_loader, warn};
 use crate::model::PyModel;
 use crate::results::named;
 use crate::simulate::contacts::Fixed;
@@ -12,7 +12,6 @@ use mozzi_sim::{ContactChange, ContactEvent, ContactForce, Energy, Sample};
 use mozzi_urdf::XacroArguments;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
-use std::ffi::CString;
 use std::path::PathBuf;
 
 fn meshes(name: &str) -> PyResult<Meshes> {
@@ -52,8 +51,7 @@ pub(super) fn drawing(
     let drawing = Drawing::of_file_below(&file.to_string_lossy(), &xacro, meshes, mesh_root.as_deref())
         .map_err(|error| of_loader(py, error))?;
     for note in &drawing.notes {
-        let text = CString::new(note.replace('\0', "\\0")).map_err(|error| PyValueError::new_err(error.to_string()))?;
-        PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 2)?;
+        warn::<LoadWarning>(py, note, 2)?;
     }
     Ok(drawing)
 }

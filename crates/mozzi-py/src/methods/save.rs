@@ -1,11 +1,10 @@
 //! Writing a robot.
 
 use crate::describe::refused;
-use crate::failure::{LoadWarning, of_model};
+use crate::failure::{LoadWarning, of_model, warn};
 use crate::model::PyModel;
 use mozzi_urdf::{Written, json, mjcf, sdf};
 use pyo3::prelude::*;
-use std::ffi::CString;
 use std::path::PathBuf;
 
 /// The text in the format of a file's ending.
@@ -64,8 +63,7 @@ impl PyModel {
         std::fs::write(&path, text)?;
         let losses = losses.into_iter().map(|loss| format!("{} cannot express {loss}", path.display()));
         for text in losses.chain(remarks.into_iter().map(|remark| format!("{}: {remark}", path.display()))) {
-            let text = CString::new(text.replace('\0', "\\0")).map_err(refused)?;
-            PyErr::warn(py, &py.get_type::<LoadWarning>(), &text, 1)?;
+            warn::<LoadWarning>(py, &text, 1)?;
         }
         Ok(())
     }

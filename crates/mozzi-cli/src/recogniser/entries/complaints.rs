@@ -3,8 +3,9 @@
 use super::{LISTS, MEANINGS, Search};
 use crate::failure::{Failure, Result};
 use crate::recogniser::reading::places;
-use crate::recogniser::word::{DDTHETA, DTHETA, words};
+use crate::recogniser::word::{DDTHETA, DTHETA, THETA, words};
 use crate::recogniser::{Column, GROUPS, Role, columns, endings, own_names};
+use mozzi::model::Place;
 use mozzi::spelling::distance;
 
 impl Search<'_> {
@@ -65,10 +66,14 @@ impl Search<'_> {
         };
         let remedy = match (self.request.has_flags && optional == 0, group) {
             (true, DTHETA | DDTHETA) => format!("; without any {list}, they are differentiated: remove the others"),
-            (true, _) => match self.model.velocity_names().nth(at) {
-                Some(joint) => format!("; if the joint did not move, --lock {joint}=POSITION leaves it out"),
-                None => String::new(),
-            },
+            (true, _) => {
+                let first = |place: &Place| if group == THETA { place.q } else { place.j };
+                let mut joints = self.model.joint_names().zip(self.model.places());
+                let joint = joints.find(|(_, place)| first(place) == at); // none of a floating base
+                joint.map_or_else(String::new, |(joint, _)| {
+                    format!("; if the joint did not move, --lock {joint}=POSITION leaves it out")
+                })
+            }
             _ => String::new(),
         };
         Err(self.wrong(&format!(

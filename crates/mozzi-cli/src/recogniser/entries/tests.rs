@@ -1,12 +1,16 @@
-use super::super::{Header, Recognised, Request};
+use super::super::{Header, Recognised, Request, own_names};
 use super::*;
 
 fn find(header: &str, order: &[&str]) -> std::result::Result<Recognised, String> {
     let model = mozzi_urdf::open("double_pendulum").expect("embedded").description.build().expect("sound");
+    find_in(&model, header, order)
+}
+
+fn find_in(model: &Model, header: &str, order: &[&str]) -> std::result::Result<Recognised, String> {
     let header = Header::of(header.split(',').map(str::to_string).collect());
     let order: Vec<String> = order.iter().map(|name| (*name).to_string()).collect();
     let request = Request { order: &order, has_flags: true, ..Request::default() };
-    Recognised::find("log", &header, &model, &request).map_err(|failure| format!("{failure:?}"))
+    Recognised::find("log", &header, model, &request).map_err(|failure| format!("{failure:?}"))
 }
 
 fn of(found: &Recognised, group: usize) -> Vec<usize> {
@@ -46,4 +50,16 @@ fn one_kind_of_columns_is_preferred_and_two_of_one_kind_are_an_error() {
     assert!(why.contains("did you mean `dtheta_1`?"), "{why}");
     let why = find("t,q1_nm,q2_nm,tau_1,tau_2", &[]).expect_err("unit");
     assert!(why.contains("is a position in N m"), "{why}");
+}
+
+/// A pose without its quaternion: no joint can be locked for it.
+#[test]
+fn a_base_is_no_joint_to_lock() {
+    let fixed = mozzi_urdf::open("double_pendulum").expect("embedded").description.build().expect("sound");
+    let model = fixed.with_base(mozzi::model::Base::Floating).expect("floating");
+    let own = |group: usize, from: usize| own_names(&model, group)[from..].join(",");
+    let why = find_in(&model, &format!("t,{},{}", own(THETA, 4), own(TAU, 0)), &[]).expect_err("no quaternion");
+    assert!(why.contains("is missing") && !why.contains("--lock"), "{why}");
+    let why = find_in(&model, &format!("t,{},{}", own(THETA, 0), own(TAU, 0)).replace(",theta_joint1", ""), &[]);
+    assert!(!why.expect_err("no joint1").contains("--lock base"));
 }
