@@ -1,7 +1,8 @@
 //! Limits of a motion by flags.
 
-use crate::failure::{Failure, Result, note};
+use crate::failure::{Result, note};
 use crate::numbers::one_or_each;
+use crate::state::by_name;
 use crate::text::scalar;
 use mozzi::Model;
 
@@ -22,15 +23,7 @@ pub fn of_flag(
         None => return Ok(default.to_vec()),
         Some(text) if text.contains('=') => {
             let (mut found, names) = (default.to_vec(), model.velocity_names().collect::<Vec<_>>());
-            for entry in text.split(',') {
-                let (name, limit) = entry.split_once('=').map_or((entry.trim(), None), |(a, b)| (a.trim(), Some(b)));
-                let (Some(k), Some(limit)) = (names.iter().position(|known| *known == name), limit) else {
-                    let near = mozzi_urdf::did_you_mean(name, names.iter().copied());
-                    let near = near.unwrap_or_else(|| format!("expected {}", names.join(", ")));
-                    return Err(Failure::wrong(format!(
-                        "{flag}: `{entry}` is no JOINT=LIMIT of a known joint; {near}"
-                    )));
-                };
+            for (k, limit) in by_name(flag, text, &names)? {
                 found[k] = read(limit, &are_angles[k..=k])?[0];
             }
             found

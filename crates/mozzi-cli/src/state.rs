@@ -14,7 +14,8 @@ pub struct StartArguments {
     /// state [default: the robot's start, else joints at 0 and a floating base at {s}]
     #[arg(long, visible_alias = "q", aliases = ["qpos", "positions"], value_name = "θ1,θ2,…")]
     pub theta: Option<String>,
-    /// Velocities θ̇, rad/s or m/s; a floating base's twist first, in its own coordinates [default: all 0]
+    /// Velocities θ̇, rad/s or m/s; a floating base's twist first, in its own coordinates; JOINT=VELOCITY,… for some
+    /// [default: all 0]
     #[arg(long, visible_alias = "qd", value_name = "θ̇1,θ̇2,…")]
     pub dtheta: Option<String>,
     /// Take θ and θ̇ from a named state of the robot's file, such as a keyframe; `mozzi info` lists them
@@ -201,7 +202,10 @@ pub fn positions_from(theta: Vec<f64>, flag: &str, text: &str, model: &Model) ->
     let is_name =
         |text: &str| model.state_names().len() > 0 && numbers::angle(flag, text).is_err() && !text.contains(',');
     match text {
-        text if text.contains('=') => named_positions(theta, flag, text, model),
+        text if text.contains('=') => {
+            let names: Vec<&str> = model.position_names().collect();
+            with_named(theta, flag, text, &names, &angles::of_positions(model))
+        }
         name if is_name(name) => Ok(model.state(name)?.theta),
         text => {
             let are_angles = angles::of_positions(model);
@@ -222,26 +226,37 @@ fn gives_joints_only(text: &str, model: &Model) -> bool {
     model.is_floating() && model.nq() > 7 && numbers::count(text) == model.nq() - 7
 }
 
-/// `elbow=90deg,wrist=0.1`: these joints, the others as they are.
-fn named_positions(mut theta: Vec<f64>, flag: &str, text: &str, model: &Model) -> Result<Vec<f64>> {
-    let names: Vec<&str> = model.position_names().collect();
-    let are_angles = angles::of_positions(model);
-    for entry in text.split(',').filter(|entry| !entry.trim().is_empty()) {
-        let Some((name, value)) = entry.split_once('=') else {
-            return Err(Failure::wrong(format!("{flag}: `{entry}` has no name, expected JOINT=POSITION,… or numbers")));
-        };
-        let Some(k) = names.iter().position(|known| *known == name.trim()) else {
-            let near = mozzi_urdf::did_you_mean(name.trim(), names.iter().copied());
-            let near = near.unwrap_or_else(|| format!("expected {}", names.join(", ")));
-            return Err(Failure::wrong(format!("{flag}: there is no joint `{}`; {near}", name.trim())));
-        };
-        theta[k] = numbers::angles(flag, value, &are_angles[k..=k])?.first().copied().unwrap_or_default();
-        angles::question(flag, value, &theta[k..=k], &are_angles[k..=k]);
+/// `elbow=90deg,wrist=0.1`: these entries, the others as they are.
+fn with_named(mut x: Vec<f64>, flag: &str, text: &str, names: &[&str], are_angles: &[bool]) -> Result<Vec<f64>> {
+    for (k, value) in by_name(flag, text, names)? {
+        let place = format!("{flag} {}", names[k]);
+        x[k] = if are_angles[k] { numbers::angle(place, value)? } else { numbers::number(place, value)? };
+        angles::question(flag, value, &x[k..=k], &are_angles[k..=k]);
     }
-    Ok(theta)
+    Ok(x)
 }
 
-/// n numbers; zeros if the flag is not given.
+/// Each entry of `elbow=90deg,wrist=0.1`: its place among the names, and its value.
+pub fn by_name<'t>(flag: &str, text: &'t str, names: &[&str]) -> Result<Vec<(usize, &'t str)>> {
+    let mut found: Vec<(usize, &str)> = Vec::new();
+    for entry in text.split(',').filter(|entry| !entry.trim().is_empty()) {
+        let Some((name, value)) = entry.split_once('=').map(|(name, value)| (name.trim(), value.trim())) else {
+            return Err(Failure::wrong(format!("{flag}: `{entry}` has no name, expected JOINT=NUMBER,… or numbers")));
+        };
+        let Some(k) = names.iter().position(|known| *known == name) else {
+            let near = mozzi_urdf::did_you_mean(name, names.iter().copied());
+            let near = near.unwrap_or_else(|| format!("expected {}", names.join(", ")));
+            return Err(Failure::wrong(format!("{flag}: there is no joint `{name}`; {near}")));
+        };
+        if found.iter().any(|(known, _)| *known == k) {
+            return Err(Failure::wrong(format!("{flag}: `{name}` is given twice, expected once")));
+        }
+        found.push((k, value));
+    }
+    Ok(found)
+}
+
+/// n numbers, zeros where none is given.
 pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f64>> {
     let (base, are_rates) = match flag {
         "--tau" => ("base wrench (m, f)", false),
@@ -252,6 +267,10 @@ pub fn velocities(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f
     let are_angles = if are_rates { angles::of_velocities(model) } else { vec![false; model.n()] };
     match text {
         None => Ok(vec![0.0; model.n()]),
+        Some(text) if text.contains('=') => {
+            let names: Vec<&str> = model.velocity_names().collect();
+            with_named(vec![0.0; model.n()], flag, text, &names, &are_angles)
+        }
         Some(text) => entries(flag, text, model, model.velocity_names().collect(), base, &are_angles),
     }
 }

@@ -91,6 +91,25 @@ fn conditions_take_degrees() {
 }
 
 #[test]
+fn joints_may_be_given_by_name() {
+    let of = |rates: &str| numbers(&json(&["compute", "ur5", "c", &format!("--qd={rates}")])["c"]);
+    assert_eq!(of("elbow_joint=1, wrist_1_joint=-2"), of("0,0,1,-2,0,0"));
+    for (text, expected) in [
+        ("elbow_joint=1,elbow_joint=2", "--dtheta: `elbow_joint` is given twice"),
+        ("elbow=1", "--dtheta: there is no joint `elbow`; did you mean `elbow_joint`?"),
+        ("elbow_joint=1,2", "--dtheta: `2` has no name"),
+    ] {
+        let (_, message) = complaint(&["compute", "ur5", "c", &format!("--qd={text}")]);
+        assert!(message.contains(expected), "{message}");
+    }
+    let (_, message) = complaint(&["trajectory", "ur5", "--to", "1,1,1,1,1,1", "--max-velocity", "elbw_joint=1"]);
+    assert!(
+        message.contains("--max-velocity: there is no joint `elbw_joint`; did you mean `elbow_joint`?"),
+        "{message}"
+    );
+}
+
+#[test]
 fn robots_that_are_meant_are_named() {
     for guess in ["ur55", "UR5", "./ur5.urdf"] {
         let (_, message) = complaint(&["info", guess]);

@@ -298,6 +298,9 @@ pub(crate) fn cross_validated(
         let others = Evidence::new(&setup.pattern, P, logs, |_, part| part < tenths && block(part) != left_out);
         let own = Evidence::new(&setup.pattern, P, logs, |_, part| part < tenths && block(part) == left_out);
         let estimates = setup.fit(&others, stop)?;
+        if estimates.consistent.is_astray {
+            return Err(Error::NotExciting { reason: "a search ended before its optimum".into() });
+        }
         let of_block = errors(setup, &others, &estimates, &own)?;
         fits.push(estimates.consistent.predicting());
         pooled = Some(match pooled {

@@ -108,15 +108,17 @@ pub(crate) fn predict_some(
         );
         let environment = Environment { applied: &applied, ..robot.environment() };
         fast::evaluate(&query, &robot, &[theta, dtheta, ddtheta], &environment, &mut workspace, &mut [tau]);
-        for (J, [d, mu]) in columns.rotors.iter().zip(&of_rotors) {
+        let of = |given: &Option<Vec<f64>>, entry: usize, of_one: f64| {
+            given.as_ref().map_or(of_one, |table| table[k * (n + columns.rotors.len()) + entry])
+        };
+        for (r, (J, [d, mu])) in columns.rotors.iter().zip(&of_rotors).enumerate() {
             let omega = crate::rotors::rate(J, dtheta);
-            let force = d * omega + mu * shape.coulomb(omega);
+            let force = d * omega + mu * of(&samples.coulomb, n + r, shape.coulomb(omega));
             tau.iter_mut().zip(J).for_each(|(tau, J)| *tau += J * force);
         }
         for j in 0..n {
-            let of = |given: &Option<Vec<f64>>, of_one: f64| given.as_ref().map_or(of_one, |table| table[k * n + j]);
-            let coulomb = of(&samples.coulomb, shape.coulomb(dtheta[j]));
-            let friction = mu[j] * coulomb + stribeck[j] * of(&samples.stribeck, shape.stribeck(dtheta[j]));
+            let coulomb = of(&samples.coulomb, j, shape.coulomb(dtheta[j]));
+            let friction = mu[j] * coulomb + stribeck[j] * of(&samples.stribeck, j, shape.stribeck(dtheta[j]));
             tau[j] = (tau[j] + friction + offset[j]) / gain[j];
         }
     }

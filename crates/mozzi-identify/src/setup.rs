@@ -117,6 +117,15 @@ impl<'m> Setup<'m> {
 }
 
 impl Setup<'_> {
+    /// The row of an unknown's base parameter, if no others are in it: the motion can determine the unknown by itself.
+    pub fn alone(&self, k: usize) -> Option<usize> {
+        /// Smaller factors in a combination are rounding.
+        const THERE: f64 = 1e-9;
+        let row = self.base.columns.iter().position(|&column| column == k)?;
+        let parts = self.base.combination.row(row).iter().filter(|x| x.abs() > THERE).count();
+        (parts == 1).then_some(row)
+    }
+
     /// Leaves the positive part of armature and damping to the robot. Where damping is negative, the robot's Coulomb
     /// friction is the best without it: μ + d ⟨θ̇ c⟩/⟨c²⟩ with c = tanh(θ̇/w).
     fn split(&self, evidence: &Evidence, optimum: &mut Optimum) {

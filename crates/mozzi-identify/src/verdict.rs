@@ -71,8 +71,9 @@ fn weighed(found: &Identification<'_>) -> Option<Weighed> {
     let first = columns.index(Kind::Payload(0))?;
     let mass = optimum.x[first];
     let center = core::array::from_fn(|i| if mass > 0.0 { optimum.x[first + 1 + i] / mass } else { 0.0 });
-    // with how far the prior draws it from least squares
-    let deviation = optimum.deviations[first].hypot(mass - found.estimates.least_squares.x[first]);
+    // with how far the prior draws it from least squares, as in `Standing`
+    let drawn = found.setup.alone(first).map_or(0.0, |_| mass - found.estimates.least_squares.x[first]);
+    let deviation = optimum.deviations[first].hypot(drawn);
     Some(Weighed { frame, mass: [mass, deviation], center })
 }
 

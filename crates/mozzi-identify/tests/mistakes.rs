@@ -50,6 +50,10 @@ fn simulated_logs_with_a_mistake_say_which() {
     assert!(codes(&model, &slow, 8.0).contains(&"unit"));
     let wall = model.with_gravity([0.0, -9.81, 0.0]).expect("finite");
     assert!(codes(&wall, &edited(&log, n, |_, _, _| {}), 8.0).contains(&"gravity"));
+    // which no log is fitted with
+    let options = Options { choice: Choice::all(Sensor::Link), ..Options::default() };
+    let refused = identify(&wall, std::slice::from_ref(&log), &options, &|| false).expect_err("a wall").to_string();
+    assert!(refused.contains("gravity seems to be (0.000, 0.000, -9.8"), "{refused}");
     // by half a radian about y
     let tilted = model.with_gravity([9.81 * 0.5_f64.sin(), 0.0, -9.81 * 0.5_f64.cos()]).expect("finite");
     let found = texts(&tilted, &edited(&log, n, |_, _, _| {}), 8.0);
@@ -258,7 +262,7 @@ fn a_base_has_its_velocity_in_its_own_axes() {
     assert_eq!(with(&|_, V| V), Vec::<String>::new());
     for (change, expected) in [
         (&(|R: SO3, [w, v]: [Vec3; 2]| [w, R * v]) as &dyn Fn(SO3, [Vec3; 2]) -> [Vec3; 2], "its v is along the axes"),
-        (&|R, [w, v]| [R * w, R * v], "both its parts"),
+        (&|R, [w, v]| [R * w, R * v], "all of it is"),
         (&|_, [w, v]| [v, w], "it is (v, ω);"),
         (&|R, [w, v]| [R * v, w], "as MuJoCo has it"),
         (&|_, [w, v]| [w, Vec3([-v.0[0], v.0[1], v.0[2]])], "its v_x has the opposite sign"),
@@ -267,6 +271,24 @@ fn a_base_has_its_velocity_in_its_own_axes() {
         let found = with(change);
         assert!(found.len() == 1 && found[0].contains(expected), "{expected}: {found:?}");
     }
+    // a base that only translates
+    let mut cart = log.clone();
+    for (k, row) in cart.theta.chunks_mut(nq).enumerate() {
+        row[..7].copy_from_slice(&[1.0, 0.0, 0.0, 0.0, (0.01 * k as f64).sin(), 0.0, 0.0]);
+    }
+    for (k, row) in cart.dtheta.as_mut().expect("velocities").chunks_mut(n).enumerate() {
+        row[..6].copy_from_slice(&[2.0 * (0.01 * k as f64).cos(), 0.0, 0.0, 0.0, 0.0, 0.0]);
+    }
+    assert!(faults(&cart)[0].contains("it is (v, ω);"), "{:?}", faults(&cart));
+    // one at rest, whose pose is noisy
+    let mut still = log.clone();
+    let mut random = mozzi::random::Random(5);
+    for row in still.theta.chunks_mut(nq) {
+        let [x, y, z] = random.array::<3>().map(|x| 1e-3 * x);
+        row[..7].copy_from_slice(&[(1.0 - x * x - y * y - z * z).sqrt(), x, y, z, 0.0, 0.0, 0.0]);
+    }
+    still.dtheta.as_mut().expect("velocities").chunks_mut(n).for_each(|row| row[..6].fill(0.0));
+    assert_eq!(faults(&still), Vec::<String>::new());
     // the joints of a floating robot, too
     let mut slow = log.clone();
     let dtheta = slow.dtheta.as_mut().expect("velocities");

@@ -5,10 +5,10 @@ use crate::common;
 use common::{floating_motion, humanoid, motion, normal, with_forces};
 use mozzi::random::Random;
 use mozzi::{Environment, Model, SpatialInertia, Vec3, Wrench};
-use mozzi_identify::signals::{Acceleration, Cutoff, Filter, Shape};
+use mozzi_identify::signals::{Acceleration, Cutoff, Filter, Shape, prepare};
 use mozzi_identify::{
-    Choice, Columns, Compressed, Evidence, Kind, Limits, Log, Options, RefineOptions, Sensor, Setup, identified,
-    identify, predict, refine,
+    Choice, Columns, Compressed, Equations, Evidence, Kind, Limits, Log, Options, RefineOptions, Sensor, Setup,
+    identified, identify, predict, refine,
 };
 
 const UNFILTERED: Filter = Filter {
@@ -331,6 +331,7 @@ fn the_rotor_of_a_coupled_wrist_is_identified() {
     let columns = Columns::new(&model, choice.clone()).expect("columns");
     let mut x = columns.prior();
     let index = |name: &str| columns.unknowns.iter().position(|unknown| unknown.name == name).expect(name);
+    (0..x.len()).filter(|&k| columns.unknowns[k].name.ends_with("_joint.friction")).for_each(|k| x[k] = 1.0);
     let truth = [("motor6.armature", 0.15), ("motor6.damping", 0.8), ("motor6.friction", 1.2)];
     truth.iter().for_each(|(name, value)| x[index(name)] = *value);
     let log = motion(&model, 10.0, 100.0, 1.0, 4);
@@ -347,6 +348,21 @@ fn the_rotor_of_a_coupled_wrist_is_identified() {
     let predicted = predict(&found.setup.columns, &found.estimates.consistent.predicting(), &found.samples[0]);
     let rest: Vec<f64> = predicted.expect("forces").iter().zip(&found.samples[0].tau).map(|(a, b)| a - b).collect();
     assert!(rms(&rest) < 0.06, "{}", rms(&rest));
+    // also where dry friction passes a filter
+    let filter = Filter { cutoff: Cutoff::Hz(10.0), ..UNFILTERED };
+    let (samples, _) = prepare(&model, &log, &filter).expect("samples");
+    let (n, P) = (model.n(), columns.count());
+    let mut equations = Equations::new(&columns, &samples).expect("equations");
+    let (mut A, mut b, found_there) =
+        (vec![0.0; n * P], vec![0.0; n], predict(&columns, &x, &samples).expect("forces"));
+    for k in 0..samples.count() {
+        equations.fill(&samples, k, &mut A, &mut b);
+        for j in 0..n {
+            let force: f64 = (0..P).map(|c| A[j * P + c] * x[c]).sum();
+            let fixed = samples.tau[k * n + j] - b[j];
+            assert!((force + fixed - found_there[k * n + j]).abs() < 1e-9, "{k} {j}");
+        }
+    }
     let without = identify(&alone, &[log], &options, &|| false).expect("an identification");
     assert!(without.fitted.consistent[4] > 5.0 * found.fitted.consistent[4]);
 }

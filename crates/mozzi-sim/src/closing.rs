@@ -149,7 +149,7 @@ impl<S: Float + Into<f64>> Closer<S> {
             }
             change(model, &mut self.memory, &mut self.change);
             let most = largest(&self.change);
-            if !(most <= JUMP * (1.0 + largest(dtheta))) {
+            if most > JUMP * (1.0 + largest(dtheta)) {
                 let worst = self.change.iter().position(|&x| x.into().abs() == most).unwrap_or(0);
                 let joint = model.velocity_names().nth(worst).unwrap_or_default().into();
                 return Err(Error::Jumped { joint, change: most, time: t });

@@ -121,7 +121,7 @@ impl fmt::Display for Error {
             Error::Jumped { joint, change, time } => write!(
                 f,
                 "the loops close at t = {time} s only if the velocity of `{joint}` jumps by {change:.3e}: the mechanism passes a \
-                 change point, where it could go on in two ways, or the step is too long; `rk4` errs least"
+                 change point, where it could go on in two ways, or the step is too long; `rk4` with shorter steps errs least"
             ),
             Error::Diverged { quantity, joint, value, step, time, step_size } => {
                 write!(f, "the simulation diverged: {quantity} of ")?;

@@ -71,7 +71,8 @@ impl EndSensitivity {
 ///
 /// # Errors
 /// [`Error::Model`] for slices of a wrong length, invalid options, a method that is not
-/// [explicit](crate::Method::explicit), or a singular mass matrix; [`Error::OpenStart`], [`Error::Opened`].
+/// [explicit](crate::Method::explicit), or a singular mass matrix; [`Error::OpenStart`], [`Error::Opened`],
+/// [`Error::Jumped`].
 pub fn held_step(
     model: &Model,
     theta: &[f64],

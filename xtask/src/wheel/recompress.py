@@ -1,4 +1,4 @@
-"""Compresses a wheel's files again by libdeflate, whose best level is 3 to 4 % smaller than zlib's: `recompress.py WHEEL`.
+"""Compresses a wheel's files again by libdeflate, whose best level is 3 to 4 % smaller than zlib's: `recompress.py WHEEL…`.
 
 Names, order and times stay, so that the same wheel gives the same bytes; the contents are compared at the end."""
 
@@ -39,4 +39,5 @@ def main(wheel):
     os.replace(smaller, wheel)
 
 
-main(sys.argv[1])
+for wheel in sys.argv[1:]:
+    main(wheel)

@@ -137,8 +137,8 @@ impl<T: Number> Batch<T> {
     /// Projects states at time t, row-major tables, onto the robot's constraints. See [`Closer::close`].
     ///
     /// # Errors
-    /// [`mozzi_sim::Error::Opened`] for the first state whose loops cannot be closed; a state that is not finite gives
-    /// no error.
+    /// [`mozzi_sim::Error::Opened`] or [`Jumped`](mozzi_sim::Error::Jumped) for the first state whose loops cannot be
+    /// closed; a state that is not finite gives no error.
     pub fn close(&self, t: f64, theta: &mut [T], dtheta: &mut [T]) -> Result<(), Error> {
         let (nq, n) = (self.model().nq(), self.model().n().max(1));
         let pieces = theta.chunks_mut(TOGETHER * nq.max(1)).zip(dtheta.chunks_mut(TOGETHER * n));

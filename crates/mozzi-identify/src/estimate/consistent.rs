@@ -95,8 +95,8 @@ impl Problem {
     ///
     /// over links with pseudo-inertias Jᵢ and positive unknowns f, relative to the size that matters to the data. Jᵢ is
     /// linear in x, so the problem is convex and has one optimum. Unknowns are whitened, J = C W Cᵀ with J₀ = C Cᵀ; γ
-    /// decreases by decades from where the prior weighs as much as the data does at the start, each solution the start
-    /// of the next: a Newton step from afar would lead to the edge of the cone. `stop` is polled before each step.
+    /// decreases by decades from the data's cost at the start, each solution the start of the next: a Newton step from
+    /// afar would lead to the edge of the cone. `stop` is polled before each step.
     ///
     /// # Errors
     /// [`Error::Infeasible`] if a bound excludes every start; [`Error::NotExciting`] if an unknown has neither data nor
@@ -105,8 +105,9 @@ impl Problem {
         let newton = Newton::new(self, data);
         let mut y = newton.start()?;
         let mut steps = 0;
-        let least = self.bodies.iter().map(|(_, _, weight)| *weight).fold(1.0, f64::min);
-        let mut gamma = (newton.cost(&y, 0.0) / least).max(100.0).max(self.gamma);
+        // γ times the least weight is the data's cost at the start
+        let weights = self.bodies.iter().map(|(_, _, weight)| newton.cost(&y, 0.0) / weight);
+        let mut gamma = weights.fold(self.gamma, f64::max);
         let end = loop {
             let is_last = gamma <= 1.01 * self.gamma;
             gamma = if is_last { self.gamma } else { gamma };
@@ -332,7 +333,7 @@ impl<'p> Newton<'p> {
             let decrement = -g.dot(&step);
             let share = 0.5 * decrement / cost.abs().max(1e-12);
             if !(share > tolerance) {
-                return Ok(End::Optimum);
+                return Ok(if share.is_nan() { End::Astray } else { End::Optimum });
             }
             let mut t = 1.0;
             loop {

@@ -5,8 +5,7 @@ use crate::Finding;
 use mozzi::model::Place;
 use mozzi::{SO3, Vec3};
 
-/// The velocity is of another motion above this difference, relative to its size; doubtful above the second.
-const APART: f64 = 0.7;
+/// The velocity is doubtful above this difference, relative to its size.
 const DOUBTFUL: f64 = 0.2;
 /// A mistake is named if without it the difference is below this, and below this part of what it was.
 const EXPLAINED: f64 = 0.3;
@@ -18,12 +17,12 @@ type Velocities = Vec<Vec<Vec3>>;
 type Reading = (&'static str, fn(SO3, [Vec3; 2]) -> [Vec3; 2]);
 
 const READINGS: [Reading; 7] = [
-    ("its v is along the axes of {s}", |R, [w, v]| [w, R * v]),
-    ("both its parts are along the axes of {s}", |R, [w, v]| [R * w, R * v]),
+    ("its v is along the axes in which the pose is given", |R, [w, v]| [w, R * v]),
+    ("all of it is along the axes in which the pose is given", |R, [w, v]| [R * w, R * v]),
     ("it is (v, ω)", |_, [w, v]| [v, w]),
-    ("it is (v, ω), its v along the axes of {s}, as MuJoCo has it", |R, [w, v]| [R * v, w]),
-    ("it is (v, ω), along the axes of {s}", |R, [w, v]| [R * v, R * w]),
-    ("its ω is in deg/s", |_, [w, v]| [w * core::f64::consts::PI.recip() * 180.0, v]),
+    ("it is (v, ω), its v along the axes in which the pose is given, as MuJoCo has it", |R, [w, v]| [R * v, w]),
+    ("it is (v, ω), all of it along the axes in which the pose is given", |R, [w, v]| [R * v, R * w]),
+    ("its ω is in deg/s", |_, [w, v]| [w * 1_f64.to_degrees(), v]),
     ("it has the opposite sign", |_, [w, v]| [-w, -v]),
 ];
 
@@ -43,17 +42,17 @@ pub fn check(
     };
     let (pose, logged) = (vectors(slopes), vectors(logged));
     let square = |x: &[Vec3]| x.iter().map(|x| x.dot(*x)).sum::<f64>();
-    let moves: Vec<bool> = pose.iter().map(|part| square(part).sqrt() > slow).collect();
-    if !moves[0] {
-        return None; // without rotation neither axes nor order can be told apart
+    let moves = |part: &[Vec3]| square(part).sqrt() > slow;
+    if !pose.iter().any(|part| moves(part)) {
+        return None;
     }
-    // that of the worse part
+    // the difference of the worse one of the parts that are expected to move
     let apart = |expected: &Velocities| {
         let of = |k: usize| {
             let rest: Vec<Vec3> = logged[k].iter().zip(&expected[k]).map(|(a, b)| *a - *b).collect();
             (square(&rest) / square(&expected[k]).max(f64::MIN_POSITIVE)).sqrt()
         };
-        (0..pose.len()).filter(|&k| moves[k]).map(of).fold(0.0, f64::max)
+        (0..pose.len()).filter(|&k| moves(&expected[k])).map(of).reduce(f64::max).unwrap_or(f64::INFINITY)
     };
     let as_read = apart(&pose);
     if as_read < DOUBTFUL {
@@ -85,15 +84,17 @@ pub fn check(
             "{log}: the velocity of {body} differs by {:.0} % from the derivative of its pose",
             100.0 * as_read
         );
+        let expected = if pose.len() == 1 { "ω" } else { "(ω, v)" };
         format!(
-            "{differs}: {what}; expected (ω, v) in the axes of the body, rad/s and m/s. Without its columns the pose is differentiated"
+            "{differs}: {what}; expected {expected} in the axes of the body, rad/s and m/s. Without its columns the pose \
+             is differentiated"
         )
     };
-    match best {
-        Some((reading, _)) => Some(Finding::fault("velocity", text(&reading))),
-        None if as_read > APART => {
-            Some(Finding::fault("velocity", text("other axes, another order of the quaternion, or another motion")))
+    Some(match best {
+        Some((reading, _)) => Finding::fault("velocity", text(&reading)),
+        None => {
+            let what = "noise, a delay, other axes, another order of the quaternion, or another motion";
+            Finding::warning("velocity", text(what))
         }
-        None => Some(Finding::warning("velocity", text("noise, or a filter that delays"))),
-    }
+    })
 }

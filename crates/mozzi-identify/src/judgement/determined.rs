@@ -9,8 +9,8 @@ const THERE: f64 = 1e-9;
 /// How well the data determines one unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standing {
-    /// The standard deviation, if the data determines the unknown by itself: with how far the identified value is from
-    /// that of least squares, which has no prior.
+    /// √(σ² + (x − x_LS)²) if the data determines the unknown by itself: the noise, and how far the prior and bounds
+    /// draw it from least squares.
     pub deviation: Option<f64>,
     /// Otherwise the combinations with it that are determined, the shortest first; none if no force depends on it, or
     /// if the motion determines none of them.
@@ -41,11 +41,8 @@ pub fn standings(found: &Identification<'_>, parameters: &[Parameter]) -> Vec<St
     let (setup, K) = (&found.setup, &found.setup.base.combination);
     let count = setup.columns.count();
     let with = |k: usize| (0..K.nrows()).filter(move |&row| K[(row, k)].abs() > THERE);
-    let is_alone = |row: usize| (0..count).filter(|&k| K[(row, k)].abs() > THERE).count() == 1;
     let of = |k: usize| {
-        if let Some(row) = setup.base.columns.iter().position(|&column| column == k)
-            && is_alone(row)
-        {
+        if let Some(row) = setup.alone(k) {
             let bias = found.estimates.consistent.predicting()[k] - found.estimates.least_squares.x[k];
             let deviation = parameters[row].deviation.hypot(bias);
             return Standing { deviation: (!parameters[row].is_weak()).then_some(deviation), only: Vec::new() };

@@ -119,11 +119,6 @@ impl Mistake {
         }
     }
 
-    /// Gravity along no axis.
-    pub fn is_tilt(&self) -> bool {
-        matches!(self, Mistake::Gravity(g) if g.iter().filter(|x| x.abs() > 1e-9).count() > 1)
-    }
-
     /// The finding's code.
     pub fn code(&self) -> &'static str {
         match self {
@@ -182,9 +177,7 @@ impl Mistake {
             Mistake::Gravity(g) => {
                 let shown = |g: [f64; 3]| g.map(|x| format!("{:.3}", x + 0.0)).join(", ");
                 let (found, own) = (shown(g), shown(model.gravity().0));
-                format!(
-                    "gravity seems to be ({found}) m/s² in the base frame, not ({own}): --gravity is the flag for it"
-                )
+                format!("gravity seems to be ({found}) m/s² in the base frame, not ({own}): give it with the robot")
             }
             Mistake::Wrench => {
                 "the measured wrenches seem not to act on the robot: a sensor with an offset, in another \

@@ -155,20 +155,23 @@ fn impossible(found: &Identification<'_>) -> Option<Finding> {
     /// Errors larger than those of least squares by this factor, and than this part of the forces.
     const WORSE: (f64, f64) = (2.0, 0.01);
     let (errors, columns) = (&found.fitted, &found.setup.columns);
+    if columns.bodies().is_empty() || found.estimates.consistent.is_astray {
+        return None;
+    }
     let [exists, least] = [&errors.consistent, &errors.least_squares].map(|list| errors.normalized(list));
     if exists < WORSE.0 * least || exists < WORSE.1 {
         return None;
     }
-    let mass = columns.index(Kind::Payload(0)).map(|k| found.estimates.least_squares.x[k]);
-    let why = match mass.filter(|mass| *mass < 0.0) {
-        Some(mass) => format!("a payload of {mass:.3} kg: something in the robot's file is not mounted"),
-        None => "bodies of negative mass or inertia: the robot's file, a column or a unit is wrong".into(),
+    let payload = columns.index(Kind::Payload(0)).filter(|&k| found.setup.alone(k).is_some());
+    let why = match payload.map(|k| found.estimates.least_squares.x[k]).filter(|mass| *mass < 0.0) {
+        Some(mass) => format!("with a payload of {mass:.3} kg: something in the robot's file is not mounted"),
+        None => "with bodies that do not: the robot's file, a column or a unit is wrong, or --prior is large".into(),
     };
     let percent = |x: f64| 100.0 * x;
     Some(Finding::warning(
         "impossible_bodies",
         format!(
-            "bodies that exist explain the forces to {:.1} %, least squares to {:.1} %, with {why}",
+            "bodies that exist explain the forces to {:.1} %, least squares to {:.1} %, {why}",
             percent(exists),
             percent(least)
         ),

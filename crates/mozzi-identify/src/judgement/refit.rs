@@ -107,6 +107,11 @@ fn undone(samples: &Samples, mistake: &Mistake, n: usize) -> Samples {
     if *mistake == Mistake::Wrench {
         samples.wrenches.clear();
     }
+    if !matches!(mistake, Mistake::None | Mistake::ForceSign(_) | Mistake::ForceScale(..) | Mistake::SwappedForces(..))
+        && samples.coulomb.as_ref().is_some_and(|table| table.len() > samples.dtheta.len())
+    {
+        (samples.coulomb, samples.stribeck) = (None, None); // a rotor's rate is another one then
+    }
     if *mistake == Mistake::WrenchSign {
         samples.wrenches.iter_mut().flat_map(|(_, table)| table).for_each(|x| *x = -*x);
     }
@@ -119,8 +124,7 @@ fn undone(samples: &Samples, mistake: &Mistake, n: usize) -> Samples {
         samples.dtheta[row.clone()].copy_from_slice(&dtheta);
         samples.ddtheta[row.clone()].copy_from_slice(&ddtheta);
         for friction in [&mut samples.coulomb, &mut samples.stribeck].into_iter().flatten() {
-            let width = friction.len() / samples.t.len();
-            mistake.undo_rates(&mut friction[k * width..][..n]);
+            mistake.undo_rates(&mut friction[row.clone()]);
         }
     }
     samples

@@ -23,10 +23,7 @@ const APART: f64 = 0.5;
 /// Above this share the file predicts so badly that no robot of this file has recorded the log.
 const ABSURD: f64 = 10.0;
 
-/// A base that leaves more than this share of the variance unexplained may be tilted,
-const GOOD: f64 = 0.01;
-
-/// by an angle that is sought in these steps, rad; a smaller one than the second number is none.
+/// A base may be tilted by an angle that is sought in these steps, rad; a smaller one than the second number is none.
 const TILTS: ([f64; 5], f64) = ([0.4, 0.2, 0.1, 0.05, 0.02], 0.05);
 
 /// Samples that are compared.
@@ -77,10 +74,8 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
     let as_it_is = comparison.score(&Mistake::None);
     let share = |score: f64| (score / names.len() as f64).exp();
     let most = comparison.most();
-    let tilt = if share(as_it_is) > GOOD { comparison.tilt() } else { None };
     let all: Vec<(Mistake, f64)> = Mistake::all(model, comparison.limits.is_some(), &most)
         .into_iter()
-        .chain(tilt)
         .filter_map(|mistake| {
             let (score, without) = comparison.scores(&mistake);
             // what friction and armature explain alone is no evidence
@@ -119,13 +114,15 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
     let gain = as_it_is - least;
     Ok(match () {
         () if gain > CLEAR && is_explained && is_apart => {
-            // a tilt has two numbers that are fitted
-            let is_sure = gain > SURE && !best.is_tilt();
-            let level = if is_sure { Level::Fault } else { Level::Warning };
+            let level = if gain > SURE { Level::Fault } else { Level::Warning };
             let text = format!("{log}: {}; {}", best.text(model), evidence(least));
             vec![Finding { code: best.code(), level, text }]
         }
         () if gain > CLEAR && share(as_it_is) > EXPLAINED || share(as_it_is) > ABSURD => {
+            if let Some(tilt) = comparison.tilt().filter(|tilt| comparison.is_explained(tilt)) {
+                let text = format!("{log}: {}; {}", tilt.text(model), evidence(comparison.score(&tilt)));
+                return Ok(vec![Finding::warning(tilt.code(), text)]);
+            }
             let level = if share(as_it_is) > ABSURD { Level::Fault } else { Level::Warning };
             let by_joint = comparison.unexplained().into_iter().zip(&names);
             let list: Vec<String> = by_joint.map(|(x, name)| format!("{name} {:.0} %", 100.0 * x)).collect();

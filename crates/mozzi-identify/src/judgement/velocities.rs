@@ -25,6 +25,7 @@ const SLOW: f64 = 0.02;
 
 /// Positions with their derivatives, logged velocities and forces, all through the fit's low-pass filter.
 struct Signals {
+    /// None of robots whose joints have one axis each.
     theta: Vec<Vec<f64>>,
     /// Derivatives of positions.
     slopes: Vec<Vec<f64>>,
@@ -74,15 +75,21 @@ impl Signals {
         let ends = trim.max(3);
         let inner = |x: Vec<f64>| x.get(ends..x.len().saturating_sub(ends)).unwrap_or_default().to_vec();
         let all = |table: &[f64]| each(n, n * run.len(), |j| inner(filtered(even(table, n, j))));
-        let mut theta = each(nq, nq * run.len(), |k| even(&log.theta, nq, k));
-        continuous(model, &mut theta);
-        theta = each(nq, nq * run.len(), |k| filtered(theta[k].clone()));
-        normalize(model, &mut theta);
-        let mut slopes = vec![vec![0.0; theta.first().map_or(0, Vec::len)]; n];
-        for place in model.configuration_space().places().iter().filter(|place| place.freedom == Freedom::One) {
-            slopes[place.j] = derivative(&theta[place.q], rows.step);
-        }
-        differentiate(model, &theta, rows.step, &mut slopes);
+        let (theta, slopes) = match model.configuration_space().is_flat() {
+            true => (Vec::new(), each(n, n * run.len(), |j| derivative(&filtered(even(&log.theta, n, j)), rows.step))),
+            false => {
+                let mut theta = each(nq, nq * run.len(), |k| even(&log.theta, nq, k));
+                continuous(model, &mut theta);
+                theta.iter_mut().for_each(|x| *x = filtered(core::mem::take(x)));
+                normalize(model, &mut theta);
+                let mut slopes = vec![vec![0.0; theta.first().map_or(0, Vec::len)]; n];
+                for place in model.configuration_space().places().iter().filter(|place| place.freedom == Freedom::One) {
+                    slopes[place.j] = derivative(&theta[place.q], rows.step);
+                }
+                differentiate(model, &theta, rows.step, &mut slopes);
+                (theta, slopes)
+            }
+        };
         Some(Signals {
             theta: theta.into_iter().map(inner).collect(),
             slopes: slopes.into_iter().map(inner).collect(),

@@ -148,6 +148,10 @@ impl Robots<'_> {
                 let time = self.options.time(done) + time;
                 self.wrong(index, Error::Opened { constraint, residual, time })
             }
+            mozzi_engine::Error::State { index, source: Error::Jumped { joint, change, time } } => {
+                let time = self.options.time(done) + time;
+                self.wrong(index, Error::Jumped { joint, change, time })
+            }
             error => of_batch(error, self.leading),
         }
     }

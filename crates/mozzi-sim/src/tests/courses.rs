@@ -90,8 +90,11 @@ fn what_cannot_go_on_ends_with_its_reason() {
     for method in [Method::MoreauJean, Method::Midpoint] {
         let options = Options { method, ..Options::new(20.0, 10) };
         let error = simulate(&model, &theta, &dtheta, Zero, &options).expect_err("too long").to_string();
-        let reasons = ["cannot be closed at t =", "did not converge in", "passes a change point"];
-        assert!(reasons.iter().any(|reason| error.contains(reason)), "{}: {error}", method.name());
+        assert!(
+            error.contains("step is too long") || error.contains("did not converge in"),
+            "{}: {error}",
+            method.name()
+        );
     }
     // a link that nothing holds back
     let options = Options { method: Method::MoreauJean, ..Options::new(0.1, 10) };

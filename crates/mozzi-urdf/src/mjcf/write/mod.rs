@@ -111,8 +111,21 @@ impl<'d> Plan<'d> {
     }
 
     /// The joint after a link without mass and frames, which MuJoCo could not have between two joints. A ball is the
-    /// last one.
+    /// last one, and a body has at most six freedoms.
     fn next(&self, joint: &Joint) -> Option<&'d Joint> {
+        let next = self.after(joint)?;
+        let mut freedoms = if matches!(next.kind, JointKind::Ball(_)) { 3 } else { 1 };
+        let mut first = joint;
+        while let Some(before) = self.d.joints.iter().find(|other| other.child == first.parent) {
+            if self.after(before).is_none_or(|after| after.name != first.name) {
+                break;
+            }
+            (first, freedoms) = (before, freedoms + 1);
+        }
+        (freedoms < 6).then_some(next)
+    }
+
+    fn after(&self, joint: &Joint) -> Option<&'d Joint> {
         let link = self.links.get(joint.child.as_str()).filter(|link| link.inertia == SpatialInertia::zero())?;
         let &[next] = self.below.get(link.name.as_str())?.as_slice() else { return None };
         let both = matches!((joint.kind, next.kind), (JointKind::Screw(_), JointKind::Screw(_) | JointKind::Ball(_)));
