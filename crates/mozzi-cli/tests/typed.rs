@@ -96,7 +96,7 @@ fn joints_may_be_given_by_name() {
     assert_eq!(of("elbow_joint=1, wrist_1_joint=-2"), of("0,0,1,-2,0,0"));
     for (text, expected) in [
         ("elbow_joint=1,elbow_joint=2", "--dtheta: `elbow_joint` is given twice"),
-        ("elbow=1", "--dtheta: there is no joint `elbow`; did you mean `elbow_joint`?"),
+        ("elbw_joint=1", "--dtheta: there is no joint `elbw_joint`; did you mean `elbow_joint`?"),
         ("elbow_joint=1,2", "--dtheta: `2` has no name"),
     ] {
         let (_, message) = complaint(&["compute", "ur5", "c", &format!("--qd={text}")]);

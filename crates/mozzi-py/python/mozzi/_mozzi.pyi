@@ -974,7 +974,7 @@ class MuJoCo:
         """Convert MuJoCo's mass matrix to mozzi's, shape (..., n, n)."""
     @property
     def joints(self) -> list[int]:
-        """Index of mozzi's joint for each of MuJoCo's joints."""
+        """Index of mozzi's joint for each of MuJoCo's joints, without mimic joints."""
 
 class Derivation:
     """A quantity of a robot in symbols, compared with its kernel: text by ``print``, a formula in notebooks."""
