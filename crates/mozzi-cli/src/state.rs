@@ -201,14 +201,14 @@ pub fn positions(flag: &str, text: Option<&str>, model: &Model) -> Result<Vec<f6
 pub fn positions_from(theta: Vec<f64>, flag: &str, text: &str, model: &Model) -> Result<Vec<f64>> {
     let is_name =
         |text: &str| model.state_names().len() > 0 && numbers::angle(flag, text).is_err() && !text.contains(',');
+    let are_angles = angles::of_positions(model);
     match text {
         text if text.contains('=') => {
             let names: Vec<&str> = model.position_names().collect();
-            with_named(theta, flag, text, &names, &angles::of_positions(model))
+            with_named(theta, flag, text, &names, &are_angles)
         }
         name if is_name(name) => Ok(model.state(name)?.theta),
         text => {
-            let are_angles = angles::of_positions(model);
             if gives_joints_only(text, model) {
                 let mut theta = theta;
                 theta[7..].copy_from_slice(&numbers::angles(flag, text, &are_angles[7..])?);

@@ -106,8 +106,8 @@ impl Problem {
         let mut y = newton.start()?;
         let mut steps = 0;
         // γ times the least weight is the data's cost at the start
-        let weights = self.bodies.iter().map(|(_, _, weight)| newton.cost(&y, 0.0) / weight);
-        let mut gamma = weights.fold(self.gamma, f64::max);
+        let cost = newton.cost(&y, 0.0);
+        let mut gamma = self.bodies.iter().map(|(_, _, weight)| cost / weight).fold(self.gamma, f64::max);
         let end = loop {
             let is_last = gamma <= 1.01 * self.gamma;
             gamma = if is_last { self.gamma } else { gamma };
