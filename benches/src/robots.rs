@@ -5,14 +5,6 @@ use mozzi::random::Random;
 use mozzi::{Description, Model, SE3, SO3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 use std::path::Path;
 
-/// The embedded robots, each with its name.
-///
-/// # Panics
-/// If one of them is invalid.
-pub fn all() -> [(&'static str, Model); 3] {
-    [("Panda", panda()), ("UR5", ur5()), ("tree of 32", tree())]
-}
-
 /// Legged robots with a floating base, from the folder of robots of PyPI's `example-robot-data`.
 ///
 /// # Errors
@@ -54,36 +46,24 @@ pub fn on_four_feet(anymal: &Model) -> Result<Model, String> {
 }
 
 /// The Panda arm: 7 joints, the fingers closed and locked.
-///
-/// # Panics
-/// When it is broken.
 pub fn panda() -> Model {
     let panda = mozzi_urdf::open("panda").and_then(|robot| robot.build()).expect("an embedded robot");
     panda.with_locked_joints(&[("panda_finger_joint1", 0.0)]).expect("it has fingers")
 }
 
 /// The UR5 arm: 6 joints.
-///
-/// # Panics
-/// When it is broken.
 pub fn ur5() -> Model {
     mozzi_urdf::open("ur5").and_then(|robot| robot.build()).expect("an embedded robot")
 }
 
 /// A tree of 32 revolute joints: a trunk of 2, a head of 2, two arms and two legs of 7. The numbers are random, the
 /// axes along x, y and z in turn, as in most robots' files.
-///
-/// # Panics
-/// When it is broken.
 pub fn tree() -> Model {
     let limbs = [("pelvis", "trunk", 2), ("trunk2", "head", 2), ("trunk2", "left_arm", 7), ("trunk2", "right_arm", 7)];
     of_limbs("tree", &[&limbs[..], &[("pelvis", "left_leg", 7), ("pelvis", "right_leg", 7)]].concat())
 }
 
 /// A chain of 100 revolute joints, its numbers random as the tree's.
-///
-/// # Panics
-/// When it is broken.
 pub fn chain() -> Model {
     of_limbs("chain", &[("pelvis", "link", 100)])
 }
@@ -125,9 +105,6 @@ fn body(random: &mut Random) -> SpatialInertia {
 /// The robot in the form given to every library: fixed links are merged into the links that carry them, joint k
 /// connects link `k` to the base or to the link of another joint, no friction, no armature, no limits, and standard
 /// gravity, which is built into dynibo.
-///
-/// # Panics
-/// If a joint is not at its link's origin, which most libraries cannot express.
 pub fn merged(model: &Model) -> Description {
     let original = model.description();
     let moving: Vec<&Joint> = model.moving_joints().collect();

@@ -30,13 +30,8 @@ impl States {
     /// The number of states, for a robot that is not very long.
     pub const COUNT: usize = 256;
 
-    /// Angles all around the circle, with an arm's typical speeds and torques.
-    pub fn new(model: &Model) -> Self {
-        Self::with_count(model, Self::COUNT)
-    }
-
-    /// This many states.
-    pub fn with_count(model: &Model, count: usize) -> Self {
+    /// This many states: angles all around the circle, with an arm's typical speeds and torques.
+    pub fn new(model: &Model, count: usize) -> Self {
         let (mut random, nq, n) = (Random(1763), model.nq(), model.n());
         let mut numbers = Vec::new();
         for _ in 0..count {

@@ -86,7 +86,6 @@ usage: cargo xtask COMMAND
           --peers pinocchio,mujoco,kdl,dynibo,casadi  only these libraries, likewise; c,c++,c++-compiled is mozzi from C, C++
           --seconds 15                                for each robot
           --install                                   let apt install clang and KDL first
-          --criterion                                 each kernel alone, without peers
           --contacts                                  steps with contacts beside MuJoCo's, into benches/CONTACTS.md
           --python                                    compare Python's calls with Pinocchio's and the Modern Robotics package's
   accuracy  measure every quantity in every way, Pinocchio and MuJoCo against numbers of 31 and 71 digits, into docs/accuracy.md
@@ -177,7 +176,6 @@ fn main() -> ExitCode {
         ["wheel", "--of-tests"] => one("wheel", || wheel::test(&workspace)),
         ["bench", "--python"] => one("benchmarks", || bench::python(&workspace)),
         ["bench", "--contacts"] => one("benchmarks", || bench::contacts(&workspace)),
-        ["bench", "--criterion"] => one("benchmarks", || bench::criterion(&workspace)),
         ["gpu-report", ref options @ ..] => one("GPU kernels", || gpu::report(&workspace, options)),
         ["gpu-bench", ref options @ ..] => one("GPU benchmarks", || gpu::bench(&workspace, options)),
         ["jit-report"] => one("machine code", || jit_report::write(&workspace)),

@@ -1,4 +1,4 @@
-//! The benchmarks, a separate package: mozzi compared with its peers, or each kernel alone by criterion.
+//! The benchmarks, a separate package: mozzi compared with its peers.
 
 mod contacts;
 mod options;
@@ -26,10 +26,6 @@ pub fn run(workspace: &Workspace, options: &Options) -> Outcome {
         Ok(note) => Outcome::Passed(note),
         Err(why) => Outcome::Failed(why),
     }
-}
-
-pub fn criterion(workspace: &Workspace) -> Outcome {
-    command::outcome(workspace.cargo(&["bench", "-p", "mozzi-benches"]))
 }
 
 fn compare(workspace: &Workspace, options: &Options) -> Result<String, String> {

@@ -160,7 +160,7 @@ pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -
                 Goal::LogDet => objective.value(&c, 0.0).0,
                 Goal::Condition => objective.condition(&c),
             };
-            if is_inside && best.as_ref().is_none_or(|(least, _)| value < *least) {
+            if is_inside && best.as_ref().is_none_or(|(least, _)| least.is_nan() || value < *least) {
                 best = Some((value, c.clone()));
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::report::finding::Finding;
 use crate::report::places::Places;
-use crate::report::spelling::{did_you_mean, longer_name};
+use crate::report::spelling::did_you_mean;
 use mozzi::Description;
 use mozzi::model::{Element, Problem};
 
@@ -40,8 +40,8 @@ fn suggestion(problem: &Problem, description: &Description, suggestions: &mut us
     let links = || description.links.iter().map(|link| link.name.as_str());
     let others = || description.joints.iter().map(|joint| joint.name.as_str()).filter(|&name| name != joint.name);
     let near = |name: &str| match problem.code {
-        "unknown_link" => did_you_mean(name, links()).or_else(|| longer_name(name, links())),
-        _ => did_you_mean(name, others()).or_else(|| longer_name(name, others())),
+        "unknown_link" => did_you_mean(name, links()),
+        _ => did_you_mean(name, others()),
     };
     match problem.attribute {
         "parent" => near(&joint.parent),

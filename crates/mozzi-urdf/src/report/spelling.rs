@@ -23,12 +23,15 @@ pub(crate) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) 
     known.into_iter().filter(|known| known.len() <= 64).filter_map(near).min_by_key(rank).map(|(_, known)| known)
 }
 
-/// A known name that ends in the given one, which lacks its prefix.
-pub(crate) fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+/// A known name that begins or ends with the given one, which lacks its suffix or prefix.
+fn longer_name<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    let is_joint = ['_', '/', '-', '.'];
     let is_longer = |known: &&str| {
-        name.len() > 2 && known.strip_suffix(name).is_some_and(|start| start.ends_with(['_', '/', '-', '.']))
+        name.len() > 2
+            && (known.strip_suffix(name).is_some_and(|start| start.ends_with(is_joint))
+                || known.strip_prefix(name).is_some_and(|end| end.starts_with(is_joint)))
     };
-    known.into_iter().find(is_longer).map(meant)
+    known.into_iter().find(is_longer)
 }
 
 /// A number and its noun: "1 number", "3 numbers".
@@ -42,9 +45,11 @@ pub(crate) fn meant(word: &str) -> String {
     format!("did you mean `{word}`?")
 }
 
-/// "did you mean `x`?" with the known word nearest to an unknown one, if it is near enough for a misspelling.
+/// "did you mean `x`?" with the known word nearest to an unknown one, if it is near enough for a misspelling, or with
+/// the first that has a prefix or a suffix more.
 pub fn did_you_mean<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
-    nearest(word, known).map(meant)
+    let known: Vec<&str> = known.into_iter().collect();
+    nearest(word, known.iter().copied()).or_else(|| longer_name(word, known)).map(meant)
 }
 
 #[cfg(test)]
@@ -61,7 +66,7 @@ mod tests {
         assert_eq!(nearest("iyx", ["ixx", "iyy", "ixy"]), Some("ixy"));
         assert_eq!(nearest("D", ["damping"]), None);
         assert_eq!(distance("", "abc"), 3);
-        let longer = longer_name("index_q1", ["index", "Left_index_q1"]);
-        assert_eq!(longer.as_deref(), Some("did you mean `Left_index_q1`?"));
+        assert_eq!(longer_name("index_q1", ["index", "Left_index_q1"]), Some("Left_index_q1"));
+        assert_eq!(did_you_mean("elbow", ["elbows_up", "elbow_joint"]).as_deref(), Some("did you mean `elbow_joint`?"));
     }
 }

@@ -1,8 +1,8 @@
 //! Operation counts of mozzi's kernels, measured with a counting scalar.
 
+use crate::states::{State, inputs};
 use mozzi::quantities::{Memory, Query};
 use mozzi::{Model, Scalar};
-use mozzi_benches::{State, inputs};
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -128,8 +128,8 @@ mod tests {
 
     #[test]
     fn a_long_chain_costs_in_proportion() {
-        let model = mozzi_benches::robots::chain();
-        let states = mozzi_benches::States::with_count(&model, 1);
+        let model = crate::robots::chain();
+        let states = crate::states::States::new(&model, 1);
         let state = states.iter().next().expect("one state");
         let count = count(InverseDynamics.into(), &model, state);
         assert_eq!(count.sin_cos, 100);

@@ -5,10 +5,10 @@ use crate::compiled;
 use crate::contestant::{Contestant, Entry};
 use crate::peak::Width;
 use crate::quantity::{self, Outputs, compared};
+use crate::states::{States, inputs};
 use mozzi::Model;
 use mozzi::fast::{self, Workspace};
 use mozzi::quantities::Query;
-use mozzi_benches::{States, inputs};
 use mozzi_engine::{Shape, compile};
 use std::hint::black_box;
 

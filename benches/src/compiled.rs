@@ -1,9 +1,9 @@
 //! mozzi's machine code for one robot.
 
 use crate::quantity;
+use crate::states::{States, inputs};
 use mozzi::Model;
 use mozzi::quantities::{InverseDynamics, Query};
-use mozzi_benches::{States, inputs};
 use mozzi_engine::{Arguments, Engine, Kernel, compile, record_quantity};
 use std::hint::black_box;
 use std::time::Instant;

@@ -2,9 +2,20 @@
 
 use mozzi::Model;
 use mozzi::quantities::{ConstrainedForwardDynamics, MOST_OUTPUTS, Query};
-use mozzi_benches::QUANTITIES;
 
 /// The quantities of the tables, in their order.
+const QUANTITIES: [&str; 8] = [
+    "inverse_dynamics",
+    "forward_dynamics",
+    "mass_matrix",
+    "coriolis_matrix",
+    "bias_forces",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
+    "constrained_forward_dynamics",
+];
+
+/// Queries of them.
 pub fn all() -> impl Iterator<Item = Query<'static>> {
     QUANTITIES.into_iter().map(|name| Query::named(name).expect("one of mozzi's"))
 }

@@ -4,11 +4,11 @@ use crate::contestant::Contestant;
 use crate::convention::Convention;
 use crate::motion::{BRAKE, STEP, STEPS};
 use crate::quantity;
+use crate::states::States;
 use libloading::{Library, Symbol};
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, JointKind};
 use mozzi::quantities::Query;
 use mozzi::{Description, Model, SE3};
-use mozzi_benches::States;
 use mozzi_sim::Method;
 use std::ffi::{CStr, CString, c_char, c_int};
 
@@ -102,7 +102,7 @@ impl Peer {
         unsafe { text(function::<Text>(&self.library, name)?()) }.ok_or_else(|| format!("{name}: no text"))
     }
 
-    /// The robot, made by [`merged`](mozzi_benches::robots::merged), at the same states; none if the library does not
+    /// The robot, made by [`merged`](crate::robots::merged), at the same states; none if the library does not
     /// support it.
     pub fn robot<'a>(&'a self, name: &str, model: &'a Model, states: &'a States) -> Result<Option<Robot<'a>>, String> {
         let (description, library) = (model.description(), &self.library);

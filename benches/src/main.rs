@@ -17,11 +17,12 @@ mod peer;
 mod quantity;
 mod race;
 mod report;
+mod robots;
 mod simulation;
+mod states;
 
 use arguments::Arguments;
 use mozzi::Model;
-use mozzi_benches::robots;
 use peer::Peer;
 use std::path::Path;
 use std::process::ExitCode;

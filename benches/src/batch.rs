@@ -3,9 +3,9 @@
 use crate::compiled;
 use crate::contestant::Contestant;
 use crate::quantity::{self, Outputs, compared};
+use crate::states::{States, inputs};
 use mozzi::Model;
 use mozzi::quantities::Query;
-use mozzi_benches::{States, inputs};
 use mozzi_engine::{Batch, Error, Shape};
 use std::hint::black_box;
 

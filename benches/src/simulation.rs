@@ -5,9 +5,9 @@ use crate::contestant::Contestant;
 use crate::motion::{BRAKE, STEP, STEPS};
 use crate::peer::Peer;
 use crate::race::{LARGEST_DIFFERENCE, Time, of_runs};
+use crate::states::States;
 use mozzi::Model;
 use mozzi::quantities::ForwardDynamics;
-use mozzi_benches::States;
 use mozzi_engine::{Compiled, compile};
 use mozzi_sim::{Method, Options, torque};
 use std::time::{Duration, Instant};
@@ -56,7 +56,7 @@ fn by_mozzi<'a>(model: &'a Model, robot: Option<&'a Compiled>) -> Run<'a> {
 pub fn simulate(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Duration) -> Result<Simulated, String> {
     let n = model.n();
     let robot = compile(model, &[ForwardDynamics.into()]).map_err(|error| error.to_string())?;
-    let states = States::with_count(model, 1);
+    let states = States::new(model, 1);
     let mut simulators = vec![Simulator::new("mozzi", "", by_mozzi(model, None))];
     if robot.simulator().is_some() {
         simulators.push(Simulator::new("compiled", "", by_mozzi(model, Some(&robot))));

@@ -1,11 +1,11 @@
 //! Converts to and from a peer's convention with `mozzi::conventions`.
 
 use crate::quantity::has_matrices;
+use crate::states::State;
 use mozzi::conventions::{MuJoCo, Pinocchio};
 use mozzi::nalgebra::{DMatrix, DVector};
 use mozzi::quantities::{BiasForces, ForwardDynamics, Query};
 use mozzi::{Error, Model};
-use mozzi_benches::State;
 
 /// A peer's order and frames for a floating base.
 pub enum Convention {

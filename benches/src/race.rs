@@ -7,9 +7,9 @@ use crate::mozzi_ways;
 use crate::peak::Width;
 use crate::peer::Peer;
 use crate::quantity;
+use crate::states::States;
 use mozzi::Model;
 use mozzi::quantities::Query;
-use mozzi_benches::States;
 use std::time::{Duration, Instant};
 
 /// The tolerance, relative to the largest entry, above which two libraries do not compute the same. The longest chain
@@ -71,7 +71,7 @@ struct Runner {
 
 /// Measures all contestants on one robot.
 pub fn race(title: &str, slug: &str, model: &Model, peers: &[Peer], time: Duration) -> Result<Table, String> {
-    let states = States::with_count(model, if model.n() > 50 { States::COUNT / 8 } else { States::COUNT });
+    let states = States::new(model, if model.n() > 50 { States::COUNT / 8 } else { States::COUNT });
     let mut entries = all(slug, model, &states, peers)?;
     let columns = checked(title, model, &states, &mut entries)?;
     let mut runners = Vec::new();
