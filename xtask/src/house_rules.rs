@@ -32,7 +32,7 @@ const LONG: usize = 400;
 
 pub fn check(workspace: &Workspace) -> Outcome {
     let mut files = Vec::new();
-    for folder in ["crates", "xtask/src", "xtask/book/src"] {
+    for folder in ["crates", "xtask/src", "xtask/book/src", "xtask/mutants/src"] {
         workspace::files(&workspace.path(folder), &["rs"], &mut files);
     }
     files.sort();

@@ -74,8 +74,8 @@ usage: cargo xtask COMMAND
           --readme                                    README's tables alone, from the pages that other commands write
   claims  list every measured number of README and the documentation with the command or test that it comes from
   coverage  lines and regions that the libraries' tests run, into docs/coverage.md; needs llvm-cov of rustc's LLVM
-  mutants a sample of the faults that cargo-mutants puts into the kernels, each shown to the tests; adds to docs/mutants.md
-          --sample 60 --seed 0                        how many, which ones
+  mutants put a sample of faults into the sources, each shown to the tests that pass it; adds to docs/mutants.md
+          --sample 200 --seed 0                       how many, which ones
   book    build the documentation book from book/, docs/ and the sources, with rustdoc, into target/book/html
           --code                                      run its code blocks instead; `test` does that and builds the book
   page    bundle page/ by npm, and mozzi-web if there is a compiler for WebAssembly, into crates/mozzi-report/bundle/;
@@ -267,9 +267,11 @@ enum Check {
 fn check(workspace: &Workspace, which: Check) -> ExitCode {
     let mut report = Report::default();
     report.step("formatting", || command::outcome(workspace.cargo(&["fmt", "--all", "--check"])));
-    report.step("formatting of the book's builder", || {
-        command::outcome(workspace.cargo(&["fmt", "--check", "--manifest-path", "xtask/book/Cargo.toml"]))
-    });
+    for tool in ["xtask/book/Cargo.toml", "xtask/mutants/Cargo.toml"] {
+        report.step(&format!("formatting, {tool}"), || {
+            command::outcome(workspace.cargo(&["fmt", "--check", "--manifest-path", tool]))
+        });
+    }
     report.step("licences", || licences::check(workspace));
     report.step("licence texts", || third_party::check(workspace));
     report.step("advisories", || advisories::check(workspace));

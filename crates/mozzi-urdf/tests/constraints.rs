@@ -96,12 +96,18 @@ fn equalities_are_those_of_mujoco() {
 fn soft_parameters_are_noted_and_unnamed_ones_numbered() {
     let text = "<mujoco><worldbody><body name='a'><joint name='j'/><geom size='1'/></body></worldbody><equality>\
          <connect body1='a' anchor='0 0 1' solref='0.1 1'/><weld body1='a' torquescale='3' solimp='1'/>\
-         <weld body1='a' relpose='0 0 0 0 0 0 0'/></equality></mujoco>";
+         <weld body1='a' relpose='0 0 0 0 0 0 0'/><weld body1='a' torquescale='0'/></equality></mujoco>";
     let loaded = parse("a.xml", text).unwrap();
     let unused: Vec<&str> = loaded.unused.iter().map(|found| found.message()).collect();
     assert_eq!(unused, ["connect: `solref` is ignored", "weld: `torquescale` is ignored", "weld: `solimp` is ignored"]);
     let names: Vec<&str> = loaded.description.constraints.iter().map(|one| one.name.as_str()).collect();
-    assert_eq!(names, ["connect0", "weld1", "weld2"]);
+    assert_eq!(names, ["connect0", "weld1", "weld2", "weld3"]);
+    let closures = loaded.description.constraints.iter().map(|one| match &one.kind {
+        ConstraintKind::Frames { closure, .. } => *closure,
+        other => panic!("{other:?}"),
+    });
+    let expected = [Closure::Point, Closure::Weld, Closure::Weld, Closure::Point];
+    assert_eq!(closures.collect::<Vec<_>>(), expected, "a weld that turns nothing is a point");
     let ConstraintKind::Frames { a, b, closure } = &loaded.description.constraints[0].kind else { panic!() };
     assert_eq!((a.frame.as_deref(), &b.frame, closure), (Some("a"), &None, &Closure::Point));
     assert_eq!((a.T.p, b.T.p), (Vec3([0.0, 0.0, 1.0]), Vec3([0.0, 0.0, 1.0])));

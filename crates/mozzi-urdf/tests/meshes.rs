@@ -102,6 +102,7 @@ fn model(compiler: &str, bodies: &[String]) -> String {
             );
         }
     }
+    assets += "<hfield name='field' nrow='2' ncol='2' size='1 0.5 0.4 0.2' elevation='0 1 2 1'/>";
     let points = "0 0 0  1 0 0  0 1.5 0  0 0 2  0.9 1.2 1.9  0.2 0.2 0.2";
     let _ =
         write!(assets, "<mesh name='points' vertex='{points}'/><mesh name='hull' vertex='{points}' inertia='convex'/>");
@@ -134,6 +135,7 @@ fn models() -> Vec<(&'static str, String)> {
         "capsule' size='0.2 0.6",
         "cylinder' size='0.2 0.6",
         "ellipsoid' size='0.3 0.2 0.5",
+        "hfield' hfield='field",
     ];
     let mut primitives = Vec::new();
     for solid in solids {

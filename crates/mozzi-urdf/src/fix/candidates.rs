@@ -47,6 +47,7 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     };
     let is_alike = |G: SpatialInertia| twin.as_ref().is_some_and(|(.., twin)| alike(G, *twin));
     let mut best: Option<(f64, Candidate)> = None;
+    let mut as_simple: Vec<(f64, String)> = Vec::new();
     let mut consider = |candidate: Candidate| {
         // products of inertia alone move no moment closer to the shape's
         let Numbers { mass, center, moments } = inertial.numbers;
@@ -67,6 +68,10 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
         }
         let shape = solid.map_or_else(|| spread(&candidate.numbers), |solid| solid.distance(G));
         let score = shape + candidate.cost - if is_alike(G) { 100.0 } else { 0.0 };
+        // without a shape or a twin nothing decides between powers of ten but their sizes
+        if candidate.code == "power_of_ten" && solid.is_none() && !is_alike(G) {
+            as_simple.push((candidate.cost, candidate.reason.clone()));
+        }
         if best.as_ref().is_none_or(|(least, _)| score < *least) {
             best = Some((score, candidate));
         }
@@ -92,8 +97,12 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
         _ if found.code == "nearest_inertia" => String::new(),
         _ => format!("; as written, {verdict}"),
     };
+    let others = as_simple.iter().filter(|(cost, reason)| *cost <= found.cost && *reason != found.reason);
+    let others: Vec<&str> = others.map(|(_, reason)| reason.as_str()).collect();
+    let or =
+        if others.is_empty() { String::new() } else { format!(" (it may as well be that {})", others.join(", or ")) };
     proposal.change = change;
-    proposal.reason = format!("{}{why}", found.reason);
+    proposal.reason = format!("{}{or}{why}", found.reason);
     proposal.inertia = Some((name.to_string(), old, inertial.inertia(&numbers)));
     Some(proposal)
 }

@@ -39,7 +39,10 @@ fn reversed(robot: &Robot<'_>, joint: Tag<'_>) -> Option<Proposal> {
 /// whose name differs only in a number is no evidence: the wrist of an arm has less than its shoulder.
 fn without_effort(robot: &Robot<'_>, joint: Tag<'_>, joints: &[Tag<'_>]) -> Option<Proposal> {
     let kind = joint.attribute("type").filter(|kind| matches!(*kind, "revolute" | "prismatic" | "continuous"))?;
-    if number(joint, "effort") != Some(0.0) || joint.child("mimic").is_some() {
+    // a follower and a spring need no motor
+    let is_passive = joint.child("mimic").is_some()
+        || joint.child("dynamics").is_some_and(|dynamics| dynamics.attribute("spring_stiffness").is_some());
+    if number(joint, "effort") != Some(0.0) || is_passive {
         return None;
     }
     let others = || joints.iter().filter(|other| other.attribute("type") == Some(kind) && other.node != joint.node);

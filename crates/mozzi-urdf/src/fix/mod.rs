@@ -158,8 +158,11 @@ fn with_robot(
     if expansion::of(file_name, text, settings).map_err(EditError::Load)?.is_some() {
         return Err(unsupported("repairs are of URDF: expand it first, by `mozzi xacro`"));
     }
-    if crate::mjcf::is_mjcf(text) {
-        return Err(unsupported("repairs are of URDF; for MJCF write the repaired numbers yourself"));
+    for (format, is_other) in [("MJCF", crate::mjcf::is_mjcf(text)), ("SDFormat", crate::sdf::is_sdf(text))] {
+        if is_other {
+            let why = format!("repairs are of URDF; for {format} write the repaired numbers yourself");
+            return Err(unsupported(&why));
+        }
     }
     // an impossible inertia is what is repaired, and no reason to refuse
     let lenient = Settings { policy: Policy::Lenient, ..settings.clone() };

@@ -113,7 +113,12 @@ impl<'a> Model<'a> {
                 [(one, given.unwrap_or_else(|| named.relative([one, two]) * b)), (two, b)]
             }
         };
-        self.tie(item, ends, Closure::Weld, cx);
+        let scale = item.number("torquescale", 1.0, cx);
+        if let Some(value) = item.value("torquescale").filter(|_| scale != 0.0 && scale != 1.0) {
+            cx.leave_out(item.element.name(), "torquescale", value.span); // of a force that rigid bodies determine
+        }
+        // MuJoCo's rows of the rotation are 0 then
+        self.tie(item, ends, if scale == 0.0 { Closure::Point } else { Closure::Weld }, cx);
     }
 
     /// Adds a constraint between two frames. Frames in the world itself are in {s}.

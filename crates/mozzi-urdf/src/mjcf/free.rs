@@ -36,14 +36,15 @@ impl<'a> Model<'a> {
             return false;
         }
         let [damping, armature] = self.forces(&item, cx);
-        let aligned = match item.word("align", &["auto", "true", "false"], cx).filter(|_| is_word) {
+        let word = if is_word { item.word("align", &["auto", "true", "false"], cx) } else { None };
+        let aligned = match word {
             Some("true") => true,
             Some("false") => false,
-            _ => self.compiler.of(&item.element).align_free && is_word,
+            _ => self.compiler.of(&item.element).align_free,
         };
         if aligned && contents.bodies.is_empty() {
             let message = "would be aligned with the body's inertia, which moves the body's frame";
-            let help = "set align=\"false\": positions are then those of the file's frame";
+            let help = "set align=\"false\" of a <freejoint>: positions are then those of the file's frame";
             cx.findings.add(item.error("unsupported_attribute", "align", message).help(help));
         }
         let mut place = Place::new(item.element.span());

@@ -44,7 +44,7 @@ impl Model<'_> {
             }
         }
         let (kind, scale) = (item.word("type", &TYPES, cx).unwrap_or("sphere"), item.number("fitscale", 1.0, cx));
-        if mass.map_or(density, |[mass]| mass) == 0.0 || kind == "plane" || kind == "hfield" {
+        if mass.map_or(density, |[mass]| mass) == 0.0 || kind == "plane" {
             return nothing;
         }
         let mass = mass.map(|[mass]| mass);
@@ -71,6 +71,12 @@ impl Model<'_> {
                     (solid, frame * shift)
                 }
             }
+        } else if kind == "hfield" {
+            let name = item.value("hfield").map_or("", |value| value.text);
+            let Some(half) = self.meshes.height_field(name) else {
+                return Mass::Mesh("there is no such height field in <asset>".into());
+            };
+            (of_size("box", half), pose(item, &self.compiler, cx))
         } else {
             let Some(found) = self.solid(item, kind, cx) else { return Mass::Wrong };
             found

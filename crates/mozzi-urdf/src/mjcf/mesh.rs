@@ -40,6 +40,8 @@ type Known = BTreeMap<String, Rc<Result<Body, String>>>;
 /// All meshes by name, and those whose moments were needed.
 pub(crate) struct Meshes<'a> {
     assets: BTreeMap<String, Item<'a>>,
+    /// Half sizes of the boxes whose mass height fields have in MuJoCo, whatever their elevations.
+    height_fields: BTreeMap<String, [f64; 3]>,
     /// The folder of meshes, relative to the model's file, and whether their own folders are dropped.
     folder: String,
     strips: bool,
@@ -61,16 +63,26 @@ impl<'a> Meshes<'a> {
             let text = |name| compiler.attribute(name).map(|value| value.text);
             folder = text("meshdir").or(text("assetdir")).map_or(folder, str::to_string);
         }
-        let mut assets = BTreeMap::new();
-        for mesh in of("asset").flat_map(Element::elements).filter(|asset| asset.name() == "mesh") {
-            // a mesh without a name is named after its file
+        let (mut assets, mut height_fields) = (BTreeMap::new(), BTreeMap::new());
+        for asset in of("asset").flat_map(Element::elements).filter(|asset| ["mesh", "hfield"].contains(&asset.name()))
+        {
+            // without a name it is named after its file
             let stem = |file: &str| Path::new(file).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-            let file = || mesh.attribute("file").and_then(|file| stem(file.text));
-            let Some(name) = mesh.attribute("name").map(|name| name.text.to_string()).or_else(file) else { continue };
-            let called = mesh.called(format!("asset: mesh `{}`", crate::urdf::vocabulary::shown(&name)));
-            assets.insert(name, classes.item(called, "mesh", Class::MAIN, cx));
+            let file = || asset.attribute("file").and_then(|file| stem(file.text));
+            let Some(name) = asset.attribute("name").map(|name| name.text.to_string()).or_else(file) else { continue };
+            let called = asset.called(format!("asset: {} `{}`", asset.name(), crate::urdf::vocabulary::shown(&name)));
+            if asset.name() == "mesh" {
+                assets.insert(name, classes.item(called, "mesh", Class::MAIN, cx));
+            } else if let Some([x, y, top, base]) = Item::plain(&called).vector::<4>("size", cx) {
+                height_fields.insert(name, [x, y, top / 4.0 + base / 2.0]);
+            }
         }
-        Meshes { assets, folder, strips, files, known: RefCell::default() }
+        Meshes { assets, height_fields, folder, strips, files, known: RefCell::default() }
+    }
+
+    /// Half sizes of the box that has the mass of a height field.
+    pub fn height_field(&self, name: &str) -> Option<[f64; 3]> {
+        self.height_fields.get(name).copied()
     }
 
     /// The mesh of this name.

@@ -24,8 +24,9 @@
 //!   fitted to meshes, and `shellinertia` is computed, as in MuJoCo. Mesh files are relative to the model's.
 //! - Unnamed elements are named by their number in MuJoCo: `body3`, `joint1`.
 //! - Equalities are rigid here; MuJoCo's solver keeps them approximately: `solref`, `solimp` and `torquescale` are not
-//!   used. Anchor {a} is in body 1 and {b} in body 2, at the point that coincides with it in the file's own
-//!   configuration, or as given by `relpose` or the sites. An unnamed equality is named by its number: `connect0`.
+//!   used, but a weld whose `torquescale` is 0 is a point. Anchor {a} is in body 1 and {b} in body 2, at the point that
+//!   coincides with it in the file's own configuration, or as given by `relpose` or the sites. An unnamed equality is
+//!   named by its number: `connect0`.
 //! - A key of `<keyframe>` is a named state ([`mozzi::Model::state`]): its time, `qpos` and `qvel`. An unnamed key is
 //!   named by its number, `key0`. If the file's own configuration is not θ = 0, because a free body is elsewhere or a
 //!   joint has a `ref`, it is the state `qpos0`, and the robot starts there ([`mozzi::Model::start`]), as in MuJoCo.

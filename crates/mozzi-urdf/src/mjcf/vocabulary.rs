@@ -314,8 +314,8 @@ pub(crate) const CONNECT: Vocabulary = Vocabulary {
     ..NOTHING
 };
 pub(crate) const WELD: Vocabulary = Vocabulary {
-    attributes: &["name", "class", "active", "body1", "body2", "anchor", "relpose", "site1", "site2"],
-    listed: &["solimp", "solref", "torquescale"],
+    attributes: &["name", "class", "active", "body1", "body2", "anchor", "relpose", "site1", "site2", "torquescale"],
+    listed: &["solimp", "solref"],
     ..NOTHING
 };
 pub(crate) const TENDONS: Vocabulary = Vocabulary { many: &["spatial", "fixed"], ..NOTHING };

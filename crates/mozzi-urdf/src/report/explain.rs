@@ -77,7 +77,7 @@ const CODES: [Entry; 74] = [
         "declare the version, <robot version=\"1.1\">, or write `rpy`"),
     ("implausible_inertia",
         "The moments of inertia are far too large for the mass: the radius of gyration is more than 10 m, and \
-         more than ten times the longest distance in the robot. The numbers are used as given.",
+         more than ten times the longest distance between joints. The numbers are used as given.",
         "moments are in kg m²: those in kg mm² are a million times larger"),
     ("implausible_length",
         "A joint or a centre of mass is more than 50 m from the origin of the frame in which it is given. The \

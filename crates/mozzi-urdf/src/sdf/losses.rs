@@ -57,8 +57,15 @@ pub(super) fn of(d: &Description) -> Vec<String> {
     losses
 }
 
+/// Contents of the file that Drake or Gazebo do not take.
+pub(super) fn remarks(d: &Description) -> Vec<String> {
+    let gravity = (d.gravity != Description::new("").gravity)
+        .then(|| format!("Drake ignores the gravity of a file: set {:?} in the program", d.gravity));
+    refused_by_gazebo(d).into_iter().chain(gravity).collect()
+}
+
 /// Links without mass.
-pub(super) fn refused_by_gazebo(d: &Description) -> Option<String> {
+fn refused_by_gazebo(d: &Description) -> Option<String> {
     let base = base_link(d).map(|link| link.name.as_str());
     let has_world = has_world(d);
     let is_massless = |name: &str| !(has_world && Some(name) == base);

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::fmt::{self, Write};
 
 /// The SDFormat text of a robot, which Drake and Gazebo read, too. Armature is Drake's `drake:rotor_inertia`. The
-/// version is 1.7, or 1.11 if there are mimic joints.
+/// version is 1.7, or 1.11 if there are mimic joints, which are written twice: Drake reads its own `drake:mimic` alone.
 ///
 /// A base that is fixed becomes a link with a fixed joint `fixed_base` to the world; a base link `world` is SDFormat's
 /// own. Gravity other than (0, 0, −9.81) needs a world around the model.
@@ -29,7 +29,7 @@ pub fn write(description: &Description) -> Result<Written, NotWritten> {
     let mut text = String::new();
     // writing to a String cannot fail
     let _ = sdf(&mut text, description, &names);
-    let remarks = super::losses::refused_by_gazebo(description).into_iter().collect();
+    let remarks = super::losses::remarks(description);
     Ok(Written { text, losses, remarks })
 }
 
@@ -52,9 +52,10 @@ fn reasons(d: &Description) -> Vec<String> {
 }
 
 fn sdf(text: &mut String, d: &Description, names: &Names) -> fmt::Result {
-    let has_drake = !d.constraints.is_empty() || d.joints.iter().any(|joint| joint.armature != 0.0);
+    let has_mimics = d.joints.iter().any(|joint| joint.mimic.is_some());
+    let has_drake = has_mimics || !d.constraints.is_empty() || d.joints.iter().any(|joint| joint.armature != 0.0);
     let space = if has_drake { " xmlns:drake=\"http://drake.mit.edu\"" } else { "" };
-    let version = if d.joints.iter().any(|joint| joint.mimic.is_some()) { "1.11" } else { "1.7" };
+    let version = if has_mimics { "1.11" } else { "1.7" };
     writeln!(text, "<?xml version=\"1.0\"?>\n<sdf version=\"{version}\"{space}>")?;
     let in_world = d.gravity != Description::new("").gravity;
     if in_world {
@@ -165,6 +166,10 @@ fn joint(text: &mut String, joint: &Joint, names: &Names, of_world: bool) -> fmt
             text,
             "      <drake:rotor_inertia>{armature:?}</drake:rotor_inertia>\n      <drake:gear_ratio>1</drake:gear_ratio>"
         )?;
+    }
+    if let Some(mimic) = joint.mimic.as_ref().filter(|_| axis.is_some()) {
+        let (source, ratio, offset) = (names.joint(&mimic.joint), mimic.ratio, mimic.offset);
+        writeln!(text, "      <drake:mimic joint=\"{source}\" multiplier=\"{ratio:?}\" offset=\"{offset:?}\"/>")?;
     }
     text.write_str("    </joint>\n")
 }

@@ -104,6 +104,48 @@ fn published_faults_are_repaired() {
 }
 
 #[test]
+fn a_spring_needs_no_motor() {
+    let limit = r#"lower="-1" upper="2" effort="0""#;
+    let spring = "<dynamics damping=\"0.5\" spring_stiffness=\"200\"/><limit lower=\"-1\" upper=\"2\" effort=\"0\"";
+    assert_eq!(found(&arm(SOUND, limit)).len(), 1);
+    assert!(found(&arm(SOUND, limit).replace(&format!("<limit {limit}"), spring)).is_empty());
+}
+
+#[test]
+fn an_ambiguous_power_of_ten_is_told() {
+    // of an upper arm whose ixx and iyy were 0.22689067591: no shape shows which of them is wrong
+    let text = r#"<robot name="r"><link name="b"/><link name="upper_arm"><inertial><mass value="8.393"/>
+<inertia ixx="0.022689067591" iyy="0.22689067591" izz="0.0151074" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="a" type="continuous"><parent link="b"/><child link="upper_arm"/><axis xyz="0 1 0"/></joint></robot>"#;
+    let list = found(text);
+    assert_eq!(list.iter().map(|one| one.code).collect::<Vec<_>>(), ["power_of_ten"], "{list:#?}");
+    for moment in ["iyy is off by a factor of 10^1", "ixx is off by a factor of 10^-1"] {
+        assert!(list[0].reason.contains(moment), "{}", list[0].reason);
+    }
+    // a shape does
+    assert!(!found(&arm(&SOUND.replacen("0.065", "0.65", 1), LIMIT))[0].reason.contains("may as well"));
+}
+
+#[test]
+fn a_link_in_g_and_mm_is_told_by_the_check() {
+    // 1 kg in a box of 0.1 × 0.2 × 0.3 m, 50 mm from a joint that is 0.1 m from the base
+    let inertial = r#"<origin xyz="0 0 50"/><mass value="1000"/>
+      <inertia ixx="10833333" iyy="8333333" izz="4166666" ixy="0" ixz="0" iyz="0"/>"#;
+    let text =
+        arm(inertial, LIMIT).replacen("<axis xyz=\"1 0 0\"/>", "<origin xyz=\"0 0 0.1\"/><axis xyz=\"1 0 0\"/>", 1);
+    let warnings = parse("arm.urdf", text.clone()).unwrap().warnings;
+    assert!(warnings.iter().any(|one| one.code() == "mozzi::urdf::implausible_inertia"), "{warnings:?}");
+    assert!(found(&text)[0].reason.contains("everything is in g and mm"));
+}
+
+#[test]
+fn sdformat_is_not_repaired() {
+    let text = "<sdf version='1.9'><model name='m'><link name='a'/></model></sdf>";
+    let why = proposals("m.sdf", text, None, &Settings::default()).unwrap_err().to_string();
+    assert!(why.contains("for SDFormat write the repaired numbers yourself"), "{why}");
+}
+
+#[test]
 fn an_inertia_about_the_origin_is_moved() {
     // a body of 0.1 m whose centre is 0.9 m away: its moments are 40 times too large
     let text = r#"<robot name="r"><link name="base"/><link name="rod"><inertial><origin xyz="0 0 0.9"/><mass value="2"/>

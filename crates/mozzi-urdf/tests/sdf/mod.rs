@@ -212,6 +212,11 @@ fn mimic_limits_friction_and_springs_are_read() {
     let mimic = robot.joints[2].mimic.as_ref().unwrap();
     // 2 (θ − 0.1) + 0.5
     assert_eq!((mimic.joint.as_str(), mimic.ratio, mimic.offset), ("j", 2.0, 0.3));
+    // Drake reads no <mimic>
+    let written = mozzi_urdf::sdf::write(&robot).unwrap().text;
+    let (before, after) = (written.find("<mimic").unwrap(), written.find("</mimic>").unwrap());
+    let of_drake = read(&format!("{}{}", &written[..before], &written[after + "</mimic>".len()..]));
+    assert_eq!(of_drake.description.joints[2].mimic, robot.joints[2].mimic);
 }
 
 #[test]
@@ -365,4 +370,5 @@ fn written_names_are_not_sdformats_own() {
     let written = mozzi_urdf::sdf::write(&moon.with_gravity([0.0, 0.0, -1.62])).unwrap();
     assert!(written.text.contains("<world name=\"default\">") && written.text.contains("<model name=\"robot\">"));
     assert!(written.losses.iter().any(|loss| loss.contains("`world` → `robot`")), "{:?}", written.losses);
+    assert_eq!(written.remarks, ["Drake ignores the gravity of a file: set [0.0, 0.0, -1.62] in the program"]);
 }

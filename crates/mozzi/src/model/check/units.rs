@@ -20,7 +20,7 @@ const LIGHT: f64 = 5.0;
 const HEAVY: f64 = 1000.0;
 /// Distance from one joint to the next, or to a centre of mass: m.
 const FAR: f64 = 50.0;
-/// Radius of gyration: m, and relative to the robot's longest distance.
+/// Radius of gyration: m, and relative to the longest distance between joints.
 const WIDE: f64 = 10.0;
 /// Limits in radians end here, at two turns either way; limits beyond 720 are not degrees but mean unlimited.
 const DEGREES: core::ops::RangeInclusive<f64> = 4.0 * core::f64::consts::PI..=720.0;
@@ -38,16 +38,19 @@ impl Report<'_> {
         self.degrees();
     }
 
-    /// The longest distance from a joint to the next, or to a centre of mass. One warning at most: for the longest,
-    /// with the number of the others.
+    /// The longest distance from a joint to the next; of a robot whose joints coincide, to a centre of mass. One
+    /// warning at most: for the longest of all, with the number of the others.
     fn lengths(&mut self) -> f64 {
         let d = self.description;
-        let (mut far, mut longest) = (0, (0.0, Element::Robot, ""));
+        let (mut far, mut longest, mut between) = (0, (0.0, Element::Robot, ""), 0.0_f64);
         let joints = d.joints.iter().enumerate().map(|(i, joint)| (joint.origin.p.norm(), Element::Joint(i), "origin"));
         let links = d.links.iter().enumerate().filter(|(_, link)| is_finite(&link.inertia));
         let links = links.map(|(i, link)| (link.inertia.center_of_mass().norm(), Element::Link(i), "inertia"));
         for way in joints.chain(links).filter(|way| way.0.is_finite()) {
             far += usize::from(way.0 > FAR);
+            if way.2 == "origin" {
+                between = between.max(way.0);
+            }
             if way.0 > longest.0 {
                 longest = way;
             }
@@ -62,7 +65,7 @@ impl Report<'_> {
             );
             self.add(Severity::Warning, element, attribute, "implausible_length", message);
         }
-        length
+        if between > 0.0 { between } else { length }
     }
 
     /// Moments without mass, which is not physical.
