@@ -125,11 +125,18 @@ pub fn passed(tree: &Path, scratch: &Path) -> Result<(Vec<Test>, Passed), String
     Ok((all, of))
 }
 
-/// Shows a fault to its tests, a few at first, until one fails or `patience` has passed.
+/// Shows a fault to its tests, a few at first, until one fails; the last of those that take longer than `patience` are
+/// left out.
 fn show(fault: usize, of: &[usize], all: &[Test], scratch: &Path, patience: Duration) -> Result<Shown, String> {
-    let (start, mut done, mut size) = (Instant::now(), 0, 4);
-    while done < of.len() && start.elapsed() < patience {
-        let batch = &of[done..of.len().min(done + size)];
+    let mut sum = 0.0;
+    let is_quick = |k: &&usize| {
+        sum += all[**k].seconds;
+        sum <= patience.as_secs_f64()
+    };
+    let shown = of.iter().take_while(is_quick).count().max(1);
+    let (mut done, mut size) = (0, 4);
+    while done < shown {
+        let batch = &of[done..shown.min(done + size)];
         let mut programs: BTreeMap<&Path, Vec<&Test>> = BTreeMap::new();
         for &k in batch {
             programs.entry(&all[k].program).or_default().push(&all[k]);
@@ -148,7 +155,7 @@ fn show(fault: usize, of: &[usize], all: &[Test], scratch: &Path, patience: Dura
         }
         (done, size) = (done + batch.len(), 2 * size);
     }
-    Ok(Shown::Missed { tests: done, all: done == of.len() })
+    Ok(Shown::Missed { tests: shown, all: shown == of.len() })
 }
 
 /// Shows all faults to the tests that pass them; `report` is called as each is known.
