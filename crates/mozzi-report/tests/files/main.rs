@@ -7,6 +7,7 @@ mod exchanged;
 mod faults;
 mod places;
 mod shapes;
+mod starts;
 mod verdict;
 
 use mozzi::Description;

@@ -47,7 +47,7 @@ pub fn compare_files(
     seed: u64,
     tolerance: f64,
 ) -> Result<FilesComparison> {
-    let (mut one, mut two) = (a.model.description().clone(), b.model.description().clone());
+    let (mut one, mut two) = (without_states(a), without_states(b));
     let base = (one.base != two.base).then(|| {
         let free = if one.base == mozzi::Base::Floating { &a.name } else { &b.name };
         (one.base, two.base) = (mozzi::Base::Fixed, mozzi::Base::Fixed);
@@ -60,7 +60,7 @@ pub fn compare_files(
     // causes are sought behind exchanged names
     let exchanged = matched.exchanged();
     exchanged.iter().for_each(|names| exchange(&mut matched.b, names));
-    let mut causes = joints::causes(&matched, &b.name)?;
+    let mut causes = joints::causes(&matched, &b.name, base.is_some())?;
     let mut accounted = matched.a.clone();
     causes.iter().for_each(|cause| cause.change.apply(&mut accounted));
     let (of_bodies, mut notes) = merged::causes(&matched, &home(&accounted).or_else(|_| home(&matched.a))?, [a, b])?;
@@ -115,6 +115,13 @@ pub fn compare_files(
         causes,
         notes,
     })
+}
+
+/// The robot without its named states: they enter no force, and a free base's pose in them fits no fixed base.
+fn without_states(file: &RobotFile) -> mozzi::Description {
+    let mut robot = file.model.description().clone();
+    (robot.states, robot.start) = (Vec::new(), None);
+    robot
 }
 
 /// A note if the bases differ in mass, which no force shows while they are fixed.

@@ -21,7 +21,6 @@ pub struct Matched {
 /// By name, then by axis at home, then by the link that it moves.
 pub fn matched(a: &Description, b: &Description) -> Result<Matched> {
     let (mut a, mut b) = (freed(a), freed(b));
-    (a.states, a.start, b.states, b.start) = (Vec::new(), None, Vec::new(), None);
     let (of_a, of_b) = (Constants::of(&a)?, Constants::of(&b)?);
     let is_twin = |name: &str, nv: usize, there: &Constants| there.joint(name).is_some_and(|joint| joint.nv == nv);
     let lone_a: Vec<_> = of_a.joints.iter().filter(|joint| !is_twin(&joint.name, joint.nv, &of_b)).collect();

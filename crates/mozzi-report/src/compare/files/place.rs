@@ -101,10 +101,14 @@ impl<'d> Places<'d> {
         (one.base == Base::Fixed && !same_place(here, there)).then_some([here, there])
     }
 
-    /// A base that stands elsewhere: its turn is that of gravity, seen from the base.
-    pub fn of_base(&self, other: &str) -> Option<Cause> {
+    /// A base that stands elsewhere: its turn is that of gravity, seen from the base. A free base that `is_held` stands
+    /// nowhere in its file.
+    pub fn of_base(&self, other: &str, is_held: bool) -> Option<Cause> {
         let [here, there] = self.bases()?;
         let turn = (there.R * here.R.inverse()).log();
+        if is_held && turn.norm() <= 1e-9 {
+            return None;
+        }
         let at = |T: SE3| vector(T.p);
         let turned = match turn.norm() {
             angle if angle > 1e-9 => format!(", and turned by {}°", shown(angle.to_degrees())),

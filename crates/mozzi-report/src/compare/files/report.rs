@@ -49,6 +49,9 @@ fn verdict(it: &FilesComparison) -> String {
     if alone == 0 && it.forces_agree() {
         return "the same forces of another robot; the causes below name the differences".to_string();
     }
+    if alone == 0 && it.base.is_some() && it.causes.is_empty() {
+        return "another robot: the base is free in one file only".to_string();
+    }
     match (alone, it.is_explained()) {
         (0, true) => "another robot; the causes below explain it".to_string(),
         (0, false) => "another robot; not all of it is explained".to_string(),
