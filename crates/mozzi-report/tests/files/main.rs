@@ -6,6 +6,7 @@ mod constraints;
 mod exchanged;
 mod faults;
 mod places;
+mod rotors;
 mod shapes;
 mod starts;
 mod verdict;

@@ -4,7 +4,7 @@ use super::cause::{Cause, Change, exchange};
 use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
 use super::number::shown;
-use super::{RobotFile, constraints, joints, merged, report, shapes};
+use super::{RobotFile, constraints, joints, merged, report, rotors, shapes};
 use crate::compare::Result;
 use crate::compare::constants::home;
 use serde_json::Value;
@@ -61,6 +61,7 @@ pub fn compare_files(
     let exchanged = matched.exchanged();
     exchanged.iter().for_each(|names| exchange(&mut matched.b, names));
     let mut causes = joints::causes(&matched, &b.name, base.is_some())?;
+    causes.extend(rotors::causes(&matched, &b.name));
     let mut accounted = matched.a.clone();
     causes.iter().for_each(|cause| cause.change.apply(&mut accounted));
     let (of_bodies, mut notes) = merged::causes(&matched, &home(&accounted).or_else(|_| home(&matched.a))?, [a, b])?;
@@ -167,7 +168,8 @@ impl FilesComparison {
         self.is_compared() && self.is_accounted_for() && self.causes.iter().all(|cause| cause.has_reason)
     }
 
-    fn is_accounted_for(&self) -> bool {
+    /// Whether the causes make the difference vanish, with or without reasons.
+    pub(super) fn is_accounted_for(&self) -> bool {
         agree(&self.after, self.tolerance.max(1e-9))
     }
 

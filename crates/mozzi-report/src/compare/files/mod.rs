@@ -16,6 +16,7 @@ mod merged;
 mod number;
 mod place;
 mod report;
+mod rotors;
 mod shapes;
 mod solid;
 
