@@ -5,6 +5,7 @@ mod bodies;
 mod constraints;
 mod exchanged;
 mod faults;
+mod frames;
 mod places;
 mod rotors;
 mod shapes;

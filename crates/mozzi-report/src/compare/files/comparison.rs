@@ -4,7 +4,7 @@ use super::cause::{Cause, Change, exchange};
 use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
 use super::number::shown;
-use super::{RobotFile, constraints, joints, merged, report, rotors, shapes};
+use super::{RobotFile, constraints, frames, joints, merged, report, rotors, shapes};
 use crate::compare::Result;
 use crate::compare::constants::home;
 use serde_json::Value;
@@ -64,7 +64,11 @@ pub fn compare_files(
     causes.extend(rotors::causes(&matched, &b.name));
     let mut accounted = matched.a.clone();
     causes.iter().for_each(|cause| cause.change.apply(&mut accounted));
-    let (of_bodies, mut notes) = merged::causes(&matched, &home(&accounted).or_else(|_| home(&matched.a))?, [a, b])?;
+    let home_a = home(&accounted).or_else(|_| home(&matched.a))?;
+    let (of_bodies, mut notes) = merged::causes(&matched, &home_a, [a, b])?;
+    let is_moved = causes.iter().any(|cause| ["place", "type"].contains(&cause.kind) && !cause.name.is_empty());
+    let of_frames = frames::causes(&matched, [&home_a, &home(&matched.b)?], &b.name, is_moved)?;
+    notes.extend(frames::notes(&matched, [&one, &two], [&a.name, &b.name])?);
     of_bodies.iter().for_each(|cause| cause.change.apply(&mut accounted));
     causes.extend(of_bodies);
     if let Some(names) = exchanged {
@@ -87,6 +91,7 @@ pub fn compare_files(
         let renamed = matched.renamed.iter().find(|(here, _)| here == name);
         renamed.map_or_else(|| name.to_string(), |(_, there)| there.clone())
     };
+    causes.extend(of_frames);
     causes.extend(joints::silent(&one, &two, &there, &b.name));
     causes.extend(constraints::causes([&one, &two], &there, [&a.name, &b.name])?);
     let is_link = |robot: &mozzi::Description, name: &str| robot.links.iter().any(|link| link.name == name);

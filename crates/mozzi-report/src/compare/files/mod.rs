@@ -9,6 +9,7 @@ mod cause;
 mod comparison;
 mod constraints;
 mod forces;
+mod frames;
 mod inertia;
 mod joints;
 mod matching;
