@@ -4,7 +4,7 @@ use super::cause::{Cause, Change, exchange};
 use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
 use super::number::shown;
-use super::{RobotFile, constraints, frames, joints, merged, report, rotors, shapes};
+use super::{RobotFile, constraints, frames, joints, merged, report, rotors, shapes, starts};
 use crate::compare::Result;
 use crate::compare::constants::home;
 use serde_json::Value;
@@ -87,13 +87,13 @@ pub fn compare_files(
         let Ok(changed) = states_of.numbers(&robot) else { continue };
         cause.effect = report::effect(&states_of, &states_of.gaps(&mine, &changed));
     }
-    let there = |name: &str| {
-        let renamed = matched.renamed.iter().find(|(here, _)| here == name);
-        renamed.map_or_else(|| name.to_string(), |(_, there)| there.clone())
-    };
+    let there = |name: &str| matched.joint_there(name).to_string();
     causes.extend(of_frames);
     causes.extend(joints::silent(&one, &two, &there, &b.name));
     causes.extend(constraints::causes([&one, &two], &there, [&a.name, &b.name])?);
+    let (of_starts, states_alone) = starts::compared(&matched, [a, b], base.is_none())?;
+    causes.extend(of_starts);
+    notes.extend(states_alone);
     let is_link = |robot: &mozzi::Description, name: &str| robot.links.iter().any(|link| link.name == name);
     notes.extend(shapes::notes([a, b], &|link| is_link(&one, link) && is_link(&two, link)));
     notes.extend(base_masses([&one, &two], [a, b])?);
@@ -162,7 +162,7 @@ impl FilesComparison {
     }
 
     /// Whether the files describe the same robot: the same moving joints, limits, couplings and constraints, and the
-    /// same places and forces to the tolerance.
+    /// same places, starts and forces to the tolerance.
     pub fn agrees(&self) -> bool {
         let is_small = |cause: &Cause| cause.size <= self.tolerance;
         self.forces_agree() && self.has_same_joints() && self.causes.iter().all(is_small)
@@ -180,7 +180,7 @@ impl FilesComparison {
 
     /// "limits and damping", if robots of the same masses and geometry differ in these alone.
     pub(super) fn differing_kinds(&self) -> Option<String> {
-        const KINDS: [(&str, &str); 7] = [
+        const KINDS: [(&str, &str); 9] = [
             ("limits", "limits"),
             ("mimic", "mimic joints"),
             ("constraint", "constraints"),
@@ -188,6 +188,8 @@ impl FilesComparison {
             ("friction", "friction"),
             ("stiffness", "stiffness"),
             ("spring", "springs"),
+            ("start", "starts"),
+            ("state", "named states"),
         ];
         let is_rest_same = self.is_compared() && self.has_same_joints() && self.base.is_none();
         if !is_rest_same || !agree_at_rest(&self.before, self.tolerance) || !self.is_accounted_for() {

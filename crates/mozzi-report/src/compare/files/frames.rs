@@ -3,7 +3,7 @@
 
 use super::cause::{Cause, Change};
 use super::matching::Matched;
-use super::place::{Places, away, of_origin, rounded, same_place};
+use super::place::{Places, away, distance, of_origin, rounded, same_place};
 use crate::compare::constants::home;
 use crate::compare::{Result, vocabulary};
 use mozzi::model::description::{Anchor, Constraint, ConstraintKind, JointKind};
@@ -48,11 +48,6 @@ pub fn causes(
     let named: BTreeSet<&str> =
         robots.iter().flat_map(|robot| &robot.frames).map(|frame| frame.name.as_str()).collect();
     Ok(named.into_iter().filter_map(frame).collect())
-}
-
-/// As [`Cause::size`] of a place.
-fn distance(p: SE3, q: SE3) -> f64 {
-    ((p.p - q.p).norm() / (1.0 + p.p.norm())).max((p.R.inverse() * q.R).log().norm())
 }
 
 /// The link of a frame, or the link of this name.

@@ -92,6 +92,11 @@ impl Matched {
         })
     }
 
+    /// The second file's name of a joint.
+    pub fn joint_there<'n>(&'n self, name: &'n str) -> &'n str {
+        self.renamed.iter().find(|(here, _)| here == name).map_or(name, |(_, there)| there)
+    }
+
     /// The second file's name of a link.
     pub fn link_there<'n>(&'n self, name: &'n str) -> &'n str {
         self.links.iter().find(|(here, _)| here == name).map_or(name, |(_, there)| there)

@@ -181,11 +181,9 @@ impl<'d> Places<'d> {
 
 /// Lengths, as a part of 1 m or of the larger distance, and angles by which a joint differs.
 fn size(a: &Joint, b: &Joint) -> f64 {
-    let away = (a.origin.p - b.origin.p).norm() / (1.0 + a.origin.p.norm());
-    let turned = (a.origin.R.inverse() * b.origin.R).log().norm();
     let [x, y] = [a, b].map(|joint| screw(joint.kind, SE3::identity()));
     let axes = x.iter().zip(y).map(|(x, y)| (x - y).abs() / (1.0 + x.abs()));
-    axes.fold(away.max(turned), f64::max)
+    axes.fold(distance(a.origin, b.origin), f64::max)
 }
 
 /// Whether places whose numbers have six digits differ by as little as this.
@@ -197,6 +195,11 @@ pub fn rounded(by: f64) -> bool {
 fn rounding(a: &Joint, b: &Joint) -> Option<f64> {
     let by = size(a, b);
     (rounded(by) && a.kind.name() == b.kind.name()).then_some(by)
+}
+
+/// How far apart two places are, as [`Cause::size`].
+pub fn distance(p: SE3, q: SE3) -> f64 {
+    ((p.p - q.p).norm() / (1.0 + p.p.norm())).max((p.R.inverse() * q.R).log().norm())
 }
 
 /// "by 0.8 m and turned by 30°".
