@@ -144,3 +144,32 @@ fn two_files_are_compared_without_python() {
     says(&["compare", &before, "nowhere.sdf"], &["`nowhere.sdf` is neither a file"]);
     assert_eq!(complaint(&["compare", &before, "--tolerance", "1e-3"]).0, 2);
 }
+
+#[test]
+fn two_files_that_start_elsewhere() {
+    let folder = folder("compare_starts");
+    let mjcf = |reference: &str| {
+        format!(
+            "<mujoco model='m'><worldbody><body name='arm'><joint name='j' axis='0 1 0' {reference}/>\
+             <geom size='0.1' mass='1'/><site name='tcp' pos='0.1 0 0'/></body></worldbody></mujoco>"
+        )
+    };
+    let (a, b) = (file(&folder, "a.xml", &mjcf("")), file(&folder, "b.xml", &mjcf("ref='40'")));
+    let run = |a: &str, b: &str| {
+        let output = mozzi(&["compare", a, b]);
+        let text = String::from_utf8(output.stdout).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
+        (output.status.code().unwrap(), text)
+    };
+    let (code, text) = run(&a, &b);
+    assert!(code == 1 && text.contains("the robot starts elsewhere in b.xml: `j` 0.698132 instead of 0"), "{text}");
+    assert_eq!(run(&b, &b).0, 0);
+    // JSON has the start, URDF cannot have it
+    let [json, urdf] = ["b.json", "b.urdf"].map(|name| folder.join(name).to_str().unwrap().to_string());
+    common::text(&["convert", &b, &json]);
+    common::text(&["convert", &b, &urdf]);
+    let (code, text) = run(&b, &json);
+    assert!(code == 0 && !text.contains("only"), "{text}");
+    assert_eq!(run(&a, &json).0, 1);
+    let (code, text) = run(&b, &urdf);
+    assert!(code == 0 && text.contains("note: state of b.xml only: `qpos0`"), "{text}");
+}

@@ -21,7 +21,8 @@ pub struct CompareArguments {
     /// A robot's file (URDF, xacro, MJCF, SDFormat, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
     /// Another file of the robot, such as a converter's: the two files are compared, without a simulator. The exit code
-    /// is 0 only if moving joints, limits and couplings are the same and the forces agree to --tolerance
+    /// is 0 only if moving joints, limits, couplings, named frames, starts and states are the same, and the forces agree
+    /// to --tolerance
     other: Option<String>,
     /// With two files: the largest difference of M and of the forces, as a part of the largest number
     #[arg(long, value_name = "X", default_value = "1e-9", requires = "other")]
@@ -86,22 +87,21 @@ fn two_files(arguments: &CompareArguments, other: &str) -> Result<String> {
     let file = |name: &str| -> Result<RobotFile> {
         let (model, inertial_axes) = arguments.policy.model_and_axes(name)?;
         workload::at_most(MOST, &model, "of one that is compared")?;
+        let text = input::robot_file(name).unwrap_or_default(); // none of an embedded robot, a URDF
+        let (is_json, is_sdf) = (robot_json::is_json(name), mozzi_urdf::sdf::is_sdf(&text));
+        let has_start = is_json || is_sdf || mozzi_urdf::mjcf::is_mjcf(&text);
         // those of other formats are not read
-        let has_shapes = name != "-" && !robot_json::is_json(name) && !is_sdf(name);
+        let has_shapes = name != "-" && !is_json && !is_sdf;
         let shapes = has_shapes.then(|| geometry_with(name, &arguments.policy.settings().xacro).ok());
         let shapes = shapes.flatten().map(|all| all.shapes);
         let shown = short(name).filter(|_| is_short).unwrap_or_else(|| input::name(name).to_string());
         let path = (name != "-").then(|| Path::new(name).to_path_buf());
-        Ok(RobotFile { name: shown, model, inertial_axes, shapes, path })
+        Ok(RobotFile { name: shown, model, inertial_axes, shapes, has_start, path })
     };
     let comparison =
         compare_files(&file(&arguments.model)?, &file(other)?, arguments.states.into(), arguments.seed, tolerance)?;
     let text = if arguments.json { json::print(&comparison.json()) } else { comparison.text() };
     if comparison.agrees() { Ok(text) } else { Err(Failure::Answered(text)) }
-}
-
-fn is_sdf(path: &str) -> bool {
-    std::fs::read(path).is_ok_and(|text| mozzi_urdf::sdf::is_sdf(&String::from_utf8_lossy(&text)))
 }
 
 impl CompareArguments {

@@ -178,10 +178,11 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
         mine.joints.iter().filter_map(change).collect()
     };
     // Pinocchio stores damping and friction but omits them from its inverse dynamics, and has no springs; MuJoCo models
-    // dry friction as a constraint; springs are reported by their forces
+    // dry friction as a constraint. Springs are reported by their forces: without any, as of a URDF, the library has none
     let pinocchio = answer.library == "Pinocchio";
     type Make = fn(Vec<Change>) -> Cause;
-    let stiffness = if pinocchio { changes(|joint| joint.stiffness, true) } else { Vec::new() };
+    let has_springs = from.forces.contains_key("spring");
+    let stiffness = if has_springs { Vec::new() } else { changes(|joint| joint.stiffness, true) };
     let lists: [(Make, Vec<Change>); 4] = [
         (Cause::Armature, changes(|joint| joint.armature, false)),
         (Cause::Damping, changes(|joint| joint.damping, pinocchio)),

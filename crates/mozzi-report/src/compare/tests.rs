@@ -182,6 +182,25 @@ fn numbers_of_joints_and_of_the_world() {
 }
 
 #[test]
+fn springs_of_a_urdf_which_neither_library_reads() {
+    let stiff = |robot: &mut Description| {
+        let joint = robot.joints.iter_mut().find(|joint| joint.name == "tilt").unwrap();
+        (joint.stiffness, joint.spring_reference) = (4.0, 0.2);
+    };
+    for (record, causes, words) in [
+        (3, &["stiffness"][..], "Pinocchio has none: `tilt` 4 / 0"),
+        (4, &["gravity", "stiffness", "bounded"], "MuJoCo reads none from this file: `tilt` 4 / 0"),
+    ] {
+        let (verdict, answer) = judged(record, stiff);
+        assert_eq!(kinds(&verdict), causes);
+        assert!(verdict.is_explained(), "{verdict:?}");
+        let springs = verdict.causes.iter().find(|found| matches!(found.cause, Cause::Stiffness(_))).unwrap();
+        let said = crate::compare::vocabulary::cause(&springs.cause, &answer);
+        assert_eq!(said, format!("springs: τ contains k(θ − θ₀) here, {words}"));
+    }
+}
+
+#[test]
 fn joints_that_move_on_one_side_only() {
     let mut whole = robot("massless.urdf");
     let mut fixed = whole.clone();

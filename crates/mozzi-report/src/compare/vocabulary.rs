@@ -49,7 +49,10 @@ pub fn cause(cause: &Cause, answer: &Answer) -> String {
         Cause::Friction(list) => {
             format!("friction: μ sgn θ̇ here, a constraint force (frictionloss) in {library}: {}", changes(list))
         }
-        Cause::Stiffness(list) => format!("springs: τ contains k(θ − θ₀) here, {library} has none: {}", changes(list)),
+        Cause::Stiffness(list) => {
+            let none = if library == "Pinocchio" { "has none" } else { "reads none from this file" };
+            format!("springs: τ contains k(θ − θ₀) here, {library} {none}: {}", changes(list))
+        }
         Cause::Constraints(kinds) => format!(
             "constraints: τ of {library} contains the forces (qfrc_constraint) of {}; mozzi computes none",
             kinds.join(", ")

@@ -1,7 +1,8 @@
 //! Inertias that are divided among links in another way, or of another density.
 
-use crate::{compare_description, flat, has_cause};
+use crate::{compare_description, flat, has_cause, of_text, robot};
 use mozzi::{Description, SpatialInertia};
+use mozzi_report::compare::files::{RobotFile, compare_files};
 
 fn place(robot: &Description, link: &str) -> usize {
     robot.links.iter().position(|each| each.name == link).unwrap()
@@ -22,6 +23,46 @@ fn a_merged_link_whose_frame_is_kept() {
     assert!(comparison.agrees() && comparison.causes().next().is_none(), "{text}");
     assert!(text.contains("note: b.urdf merges `tool` into `lower`: the same body"), "{text}");
     assert_eq!(comparison.json()["notes"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn a_merged_link_that_one_file_lacks() {
+    let before = robot("before.urdf");
+    let mut description = before.model.description().clone();
+    merge(&mut description, |T, G| G.transformed(T));
+    description.links.retain(|link| link.name != "tool");
+    description.joints.retain(|joint| joint.name != "mount");
+    let after = RobotFile { name: "b.urdf".into(), model: description.build().unwrap(), ..before.clone() };
+    for [a, b] in [[&before, &after], [&after, &before]] {
+        let comparison = compare_files(a, b, 5, 1, 1e-9).unwrap();
+        let text = flat(&comparison);
+        assert!(
+            comparison.agrees() && text.contains("note: b.urdf merges `tool` into `lower`: the same body"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_link_without_mass_that_one_file_lacks_is_merged_by_none() {
+    let robot = |name: &str, tool: &str| {
+        of_text(
+            name,
+            &format!(
+                "<robot name='r'><link name='base'/><link name='arm'><inertial><mass value='1'/><origin xyz='0.1 0 0'/>\
+                 <inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j' \
+                 type='continuous'><parent link='base'/><child link='arm'/><axis xyz='0 1 0'/></joint>{tool}</robot>"
+            ),
+        )
+    };
+    let tool = "<joint name='t' type='fixed'><parent link='arm'/><child link='tool0'/></joint><link name='tool0'/>";
+    let (with, without) = (robot("with.urdf", tool), robot("without.urdf", ""));
+    for [a, b] in [[&with, &without], [&without, &with]] {
+        let comparison = compare_files(a, b, 5, 1, 1e-9).unwrap();
+        let notes = comparison.json()["notes"].clone();
+        assert_eq!(notes, serde_json::json!(["frame of with.urdf only: `tool0`"]));
+        assert!(comparison.agrees(), "{}", comparison.text());
+    }
 }
 
 #[test]

@@ -5,8 +5,11 @@ mod bodies;
 mod constraints;
 mod exchanged;
 mod faults;
+mod frames;
 mod places;
+mod rotors;
 mod shapes;
+mod starts;
 mod verdict;
 
 use mozzi::Description;
@@ -23,7 +26,14 @@ fn robot(name: &str) -> RobotFile {
     let loaded = mozzi_urdf::load(&path).unwrap_or_else(|error| panic!("{error}"));
     let (inertial_axes, shapes) =
         (loaded.inertial_axes.clone(), Some(geometry(&path.to_string_lossy()).unwrap().shapes));
-    RobotFile { name: name.to_string(), model: loaded.build().unwrap(), inertial_axes, shapes, path: Some(path) }
+    RobotFile {
+        name: name.to_string(),
+        model: loaded.build().unwrap(),
+        inertial_axes,
+        shapes,
+        has_start: false,
+        path: Some(path),
+    }
 }
 
 fn compare(a: &str, b: &str) -> FilesComparison {
@@ -34,7 +44,9 @@ fn compare(a: &str, b: &str) -> FilesComparison {
 fn of_text(name: &str, text: &str) -> RobotFile {
     let loaded = mozzi_urdf::parse(name, text).unwrap_or_else(|error| panic!("{error}"));
     let (inertial_axes, shapes) = (loaded.inertial_axes.clone(), Some(geometry::parse(name, text).shapes));
-    RobotFile { name: name.into(), model: loaded.build().unwrap(), inertial_axes, shapes, path: Some(path(name)) }
+    let has_start = !name.ends_with(".urdf");
+    let (model, path) = (loaded.build().unwrap(), Some(path(name)));
+    RobotFile { name: name.into(), model, inertial_axes, shapes, has_start, path }
 }
 
 /// a.urdf of a text, and b.urdf, in which these parts are replaced.

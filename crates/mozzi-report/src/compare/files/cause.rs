@@ -1,6 +1,6 @@
 //! A difference between the robots, and how it acts.
 
-use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::description::{Joint, JointKind, Rotor};
 use mozzi::{Description, SE3, SpatialInertia};
 
 /// A change that makes a number of the first robot the second's.
@@ -14,6 +14,8 @@ pub enum Change {
     Names([String; 2]),
     /// The inertias of these links.
     Inertia(Vec<(String, SpatialInertia)>),
+    /// A rotor becomes another, or is removed.
+    Rotor(String, Option<Rotor>),
     /// It enters no force here: limits, couplings, names.
     NoForce,
 }
@@ -73,6 +75,10 @@ impl Change {
                     robot.links.iter_mut().filter(|link| link.name == *name).for_each(|link| link.inertia = *inertia);
                 }
             }
+            Change::Rotor(name, other) => {
+                robot.rotors.retain(|rotor| rotor.name != *name);
+                robot.rotors.extend(other.clone().map(|other| Rotor { name: name.clone(), ..other }));
+            }
             Change::Names(names) => exchange(robot, names),
             Change::NoForce => {}
         }
@@ -81,10 +87,19 @@ impl Change {
 
 /// Gives each of two joints the other's name.
 pub fn exchange(robot: &mut Description, [one, two]: &[String; 2]) {
-    for joint in &mut robot.joints {
-        let other = if joint.name == *one { two } else { one };
-        if [one, two].contains(&&joint.name) {
-            joint.name.clone_from(other);
+    rename_joints(robot, |name| match name {
+        name if name == one => Some(two.clone()),
+        name if name == two => Some(one.clone()),
+        _ => None,
+    });
+}
+
+/// Gives joints other names, also where rotors have them.
+pub fn rename_joints(robot: &mut Description, other: impl Fn(&str) -> Option<String>) {
+    let of_rotors = robot.rotors.iter_mut().flat_map(|rotor| &mut rotor.gears).map(|gear| &mut gear.joint);
+    for name in robot.joints.iter_mut().map(|joint| &mut joint.name).chain(of_rotors) {
+        if let Some(other) = other(name) {
+            *name = other;
         }
     }
 }

@@ -4,7 +4,7 @@ use super::cause::{Cause, Change, exchange};
 use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
 use super::number::shown;
-use super::{RobotFile, constraints, joints, merged, report, shapes};
+use super::{RobotFile, constraints, frames, joints, merged, report, rotors, shapes, starts};
 use crate::compare::Result;
 use crate::compare::constants::home;
 use serde_json::Value;
@@ -47,7 +47,7 @@ pub fn compare_files(
     seed: u64,
     tolerance: f64,
 ) -> Result<FilesComparison> {
-    let (mut one, mut two) = (a.model.description().clone(), b.model.description().clone());
+    let (mut one, mut two) = (without_states(a), without_states(b));
     let base = (one.base != two.base).then(|| {
         let free = if one.base == mozzi::Base::Floating { &a.name } else { &b.name };
         (one.base, two.base) = (mozzi::Base::Fixed, mozzi::Base::Fixed);
@@ -60,10 +60,15 @@ pub fn compare_files(
     // causes are sought behind exchanged names
     let exchanged = matched.exchanged();
     exchanged.iter().for_each(|names| exchange(&mut matched.b, names));
-    let mut causes = joints::causes(&matched, &b.name)?;
+    let mut causes = joints::causes(&matched, &b.name, base.is_some())?;
+    causes.extend(rotors::causes(&matched, &b.name));
     let mut accounted = matched.a.clone();
     causes.iter().for_each(|cause| cause.change.apply(&mut accounted));
-    let (of_bodies, mut notes) = merged::causes(&matched, &home(&accounted).or_else(|_| home(&matched.a))?, [a, b])?;
+    let home_a = home(&accounted).or_else(|_| home(&matched.a))?;
+    let (of_bodies, mut notes) = merged::causes(&matched, &home_a, [a, b])?;
+    let is_moved = causes.iter().any(|cause| ["place", "type"].contains(&cause.kind) && !cause.name.is_empty());
+    let of_frames = frames::causes(&matched, [&home_a, &home(&matched.b)?], &b.name, is_moved)?;
+    notes.extend(frames::notes(&matched, [&one, &two], [&a.name, &b.name])?);
     of_bodies.iter().for_each(|cause| cause.change.apply(&mut accounted));
     causes.extend(of_bodies);
     if let Some(names) = exchanged {
@@ -82,12 +87,13 @@ pub fn compare_files(
         let Ok(changed) = states_of.numbers(&robot) else { continue };
         cause.effect = report::effect(&states_of, &states_of.gaps(&mine, &changed));
     }
-    let there = |name: &str| {
-        let renamed = matched.renamed.iter().find(|(here, _)| here == name);
-        renamed.map_or_else(|| name.to_string(), |(_, there)| there.clone())
-    };
+    let there = |name: &str| matched.joint_there(name).to_string();
+    causes.extend(of_frames);
     causes.extend(joints::silent(&one, &two, &there, &b.name));
     causes.extend(constraints::causes([&one, &two], &there, [&a.name, &b.name])?);
+    let (of_starts, states_alone) = starts::compared(&matched, [a, b], base.is_none())?;
+    causes.extend(of_starts);
+    notes.extend(states_alone);
     let is_link = |robot: &mozzi::Description, name: &str| robot.links.iter().any(|link| link.name == name);
     notes.extend(shapes::notes([a, b], &|link| is_link(&one, link) && is_link(&two, link)));
     notes.extend(base_masses([&one, &two], [a, b])?);
@@ -115,6 +121,13 @@ pub fn compare_files(
         causes,
         notes,
     })
+}
+
+/// The robot without its named states: they enter no force, and a free base's pose in them fits no fixed base.
+fn without_states(file: &RobotFile) -> mozzi::Description {
+    let mut robot = file.model.description().clone();
+    (robot.states, robot.start) = (Vec::new(), None);
+    robot
 }
 
 /// A note if the bases differ in mass, which no force shows while they are fixed.
@@ -149,7 +162,7 @@ impl FilesComparison {
     }
 
     /// Whether the files describe the same robot: the same moving joints, limits, couplings and constraints, and the
-    /// same places and forces to the tolerance.
+    /// same places, starts and forces to the tolerance.
     pub fn agrees(&self) -> bool {
         let is_small = |cause: &Cause| cause.size <= self.tolerance;
         self.forces_agree() && self.has_same_joints() && self.causes.iter().all(is_small)
@@ -160,13 +173,14 @@ impl FilesComparison {
         self.is_compared() && self.is_accounted_for() && self.causes.iter().all(|cause| cause.has_reason)
     }
 
-    fn is_accounted_for(&self) -> bool {
+    /// Whether the causes make the difference vanish, with or without reasons.
+    pub(super) fn is_accounted_for(&self) -> bool {
         agree(&self.after, self.tolerance.max(1e-9))
     }
 
     /// "limits and damping", if robots of the same masses and geometry differ in these alone.
     pub(super) fn differing_kinds(&self) -> Option<String> {
-        const KINDS: [(&str, &str); 7] = [
+        const KINDS: [(&str, &str); 9] = [
             ("limits", "limits"),
             ("mimic", "mimic joints"),
             ("constraint", "constraints"),
@@ -174,6 +188,8 @@ impl FilesComparison {
             ("friction", "friction"),
             ("stiffness", "stiffness"),
             ("spring", "springs"),
+            ("start", "starts"),
+            ("state", "named states"),
         ];
         let is_rest_same = self.is_compared() && self.has_same_joints() && self.base.is_none();
         if !is_rest_same || !agree_at_rest(&self.before, self.tolerance) || !self.is_accounted_for() {

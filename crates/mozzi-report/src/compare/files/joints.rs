@@ -8,8 +8,8 @@ use crate::compare::Result;
 use mozzi::Description;
 use mozzi::model::description::{Joint, JointKind};
 
-/// Gravity, friction, springs, armature and places, which enter the forces.
-pub fn causes(matched: &Matched, other: &str) -> Result<Vec<Cause>> {
+/// Gravity, friction, springs, armature and places, which enter the forces; `is_held` if one of the bases is free.
+pub fn causes(matched: &Matched, other: &str, is_held: bool) -> Result<Vec<Cause>> {
     let (a, b) = (&matched.a, &matched.b);
     let mut causes = Vec::new();
     if a.gravity.iter().zip(b.gravity).any(|(x, y)| !same(*x, y)) {
@@ -49,7 +49,7 @@ pub fn causes(matched: &Matched, other: &str) -> Result<Vec<Cause>> {
         causes.extend(places.cause(joint, there, other));
     }
     if !causes.iter().any(|cause| cause.kind == "place") {
-        causes.extend(places.of_base(other)); // no joint below it was named
+        causes.extend(places.of_base(other, is_held)); // no joint below it was named
     }
     Ok(causes)
 }

@@ -1,9 +1,11 @@
 //! Which joint of one robot is which of the other.
 
+use super::cause::rename_joints;
+use super::rotors;
 use crate::compare::Result;
 use crate::compare::constants::{Constants, freed};
 use mozzi::Description;
-use mozzi::model::description::{ConstraintKind, Joint, JointKind};
+use mozzi::model::description::{Joint, JointKind};
 
 /// Both robots with the same independent moving joints, under the first one's names.
 pub struct Matched {
@@ -20,8 +22,7 @@ pub struct Matched {
 
 /// By name, then by axis at home, then by the link that it moves.
 pub fn matched(a: &Description, b: &Description) -> Result<Matched> {
-    let (mut a, mut b) = (freed(a), freed(b));
-    (a.states, a.start, b.states, b.start) = (Vec::new(), None, Vec::new(), None);
+    let (mut a, mut b) = (tree(a), tree(b));
     let (of_a, of_b) = (Constants::of(&a)?, Constants::of(&b)?);
     let is_twin = |name: &str, nv: usize, there: &Constants| there.joint(name).is_some_and(|joint| joint.nv == nv);
     let lone_a: Vec<_> = of_a.joints.iter().filter(|joint| !is_twin(&joint.name, joint.nv, &of_b)).collect();
@@ -62,16 +63,19 @@ pub fn matched(a: &Description, b: &Description) -> Result<Matched> {
             .for_each(|joint| joint.kind = JointKind::Fixed);
     }
     // a name of b that a has for another joint must not be taken for it
-    for joint in &mut b.joints {
-        if let Some((name, _)) = renamed.iter().find(|(_, there)| *there == joint.name) {
-            joint.name.clone_from(name);
-        } else if renamed.iter().any(|(name, _)| *name == joint.name) {
-            joint.name.push('\'');
-        }
-    }
+    rename_joints(&mut b, |joint| match renamed.iter().find(|(_, there)| there == joint) {
+        Some((name, _)) => Some(name.clone()),
+        None => renamed.iter().any(|(name, _)| name == joint).then(|| format!("{joint}'")),
+    });
+    [&mut a, &mut b].into_iter().for_each(rotors::to_armature);
     let links = links_of_joints(&a, &b);
     links.iter().for_each(|(here, there)| rename_link(&mut b, there, here));
     Ok(Matched { a, b, renamed, links, only_a, only_b })
+}
+
+/// The robot with independent mimic joints, and without constraints and motors, which enter none of its forces.
+fn tree(robot: &Description) -> Description {
+    Description { constraints: Vec::new(), motors: None, ..freed(robot) }
 }
 
 impl Matched {
@@ -86,6 +90,11 @@ impl Matched {
             let is_twin = |two: &&&Joint| child(&one.name) == Some(&two.child) && child(&two.name) == Some(&one.child);
             off[k + 1..].iter().find(is_twin).map(|two| [one.name.clone(), two.name.clone()])
         })
+    }
+
+    /// The second file's name of a joint.
+    pub fn joint_there<'n>(&'n self, name: &'n str) -> &'n str {
+        self.renamed.iter().find(|(here, _)| here == name).map_or(name, |(_, there)| there)
     }
 
     /// The second file's name of a link.
@@ -119,10 +128,6 @@ fn rename_link(robot: &mut Description, from: &str, to: &str) {
     let links = robot.links.iter_mut().map(|link| &mut link.name);
     let of_joints = robot.joints.iter_mut().flat_map(|joint| [&mut joint.parent, &mut joint.child]);
     let of_frames = robot.frames.iter_mut().map(|frame| &mut frame.link);
-    let anchors = robot.constraints.iter_mut().flat_map(|constraint| match &mut constraint.kind {
-        ConstraintKind::Frames { a, b, .. } => [a, b].into_iter().filter_map(|anchor| anchor.frame.as_mut()).collect(),
-        _ => Vec::new(),
-    });
-    let all = links.chain(of_joints).chain(of_frames).chain(anchors).chain(&mut robot.end_effector);
+    let all = links.chain(of_joints).chain(of_frames).chain(&mut robot.end_effector);
     all.filter(|name| *name == from).for_each(|name| *name = to.to_string());
 }

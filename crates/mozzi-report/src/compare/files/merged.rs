@@ -40,7 +40,7 @@ pub fn causes(
         };
         let (mine, theirs) = (whole(robots[0], &names, home_a), whole(robots[1], &others, &home_b));
         if same_body(&mine, &theirs) {
-            notes.extend(merged_links(&names, robots, files));
+            notes.extend(merged_links([&names, &others], robots, files));
             continue; // merged as it should be
         }
         if is_light(robots[0], &only_a) && is_light(robots[1], &only_b) {
@@ -102,16 +102,15 @@ fn inertia(robot: &Description, link: &str) -> SpatialInertia {
     robot.links.iter().find(|each| each.name == link).map_or_else(SpatialInertia::zero, |each| each.inertia)
 }
 
-/// Links that both have, of whose inertia one robot has made a part of another link's.
-fn merged_links(names: &[&str], robots: [&Description; 2], files: [&RobotFile; 2]) -> Option<String> {
-    let massless = |robot: &Description, name: &str| {
-        robot.links.iter().any(|link| link.name == name && link.inertia == SpatialInertia::zero())
-    };
+/// Links of whose inertia one robot, which may lack them, has made a part of another link's. `bodies` has the links of
+/// both bodies.
+fn merged_links(bodies: [&[&str]; 2], robots: [&Description; 2], files: [&RobotFile; 2]) -> Option<String> {
+    let has_mass = |k: usize, name: &str| inertia(robots[k], name) != SpatialInertia::zero();
     [(0, 1), (1, 0)].into_iter().find_map(|(here, there)| {
-        let merges = |name: &&&str| !massless(robots[here], name) && massless(robots[there], name);
-        let list: Vec<String> = names.iter().skip(1).filter(merges).map(|name| format!("`{name}`")).collect();
-        let sentence =
-            || format!("{} merges {} into `{}`: the same body", files[there].name, list.join(", "), names[0]);
+        let merges = |name: &&&str| has_mass(here, name) && !has_mass(there, name);
+        let list: Vec<String> = bodies[here].iter().filter(merges).map(|name| format!("`{name}`")).collect();
+        let into = bodies[there].iter().find(|name| has_mass(there, name))?;
+        let sentence = || format!("{} merges {} into `{into}`: the same body", files[there].name, list.join(", "));
         (!list.is_empty()).then(sentence)
     })
 }

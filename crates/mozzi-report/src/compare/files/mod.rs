@@ -9,6 +9,7 @@ mod cause;
 mod comparison;
 mod constraints;
 mod forces;
+mod frames;
 mod inertia;
 mod joints;
 mod matching;
@@ -16,8 +17,10 @@ mod merged;
 mod number;
 mod place;
 mod report;
+mod rotors;
 mod shapes;
 mod solid;
+mod starts;
 
 pub use comparison::{FilesComparison, compare_files};
 
@@ -38,6 +41,8 @@ pub struct RobotFile {
     pub inertial_axes: BTreeMap<String, SO3>,
     /// The shapes of its links; none if those of its format are not read.
     pub shapes: Option<Vec<Shape>>,
+    /// Whether its format says where the robot starts. URDF does not: there a start is no difference.
+    pub has_start: bool,
     /// Its place, from which meshes are found; without it they are not read.
     pub path: Option<PathBuf>,
 }

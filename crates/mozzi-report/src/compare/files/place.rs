@@ -22,7 +22,7 @@ fn close(x: f64, y: f64) -> bool {
     (x - y).abs() <= 1e-9 * (1.0 + x.abs())
 }
 
-fn same_place(x: SE3, y: SE3) -> bool {
+pub fn same_place(x: SE3, y: SE3) -> bool {
     (0..4).all(|i| (0..4).all(|j| close(x.to_matrix()[i][j], y.to_matrix()[i][j])))
 }
 
@@ -88,7 +88,7 @@ impl<'d> Places<'d> {
     }
 
     /// The bases' poses at home, if joints that begin there have the same origins, and yet are elsewhere.
-    fn bases(&self) -> Option<[SE3; 2]> {
+    pub fn bases(&self) -> Option<[SE3; 2]> {
         let [one, two] = self.robots;
         let of = |joint: &Joint| {
             let there = twin(joint, two)?;
@@ -101,10 +101,14 @@ impl<'d> Places<'d> {
         (one.base == Base::Fixed && !same_place(here, there)).then_some([here, there])
     }
 
-    /// A base that stands elsewhere: its turn is that of gravity, seen from the base.
-    pub fn of_base(&self, other: &str) -> Option<Cause> {
+    /// A base that stands elsewhere: its turn is that of gravity, seen from the base. A free base that `is_held` stands
+    /// nowhere in its file.
+    pub fn of_base(&self, other: &str, is_held: bool) -> Option<Cause> {
         let [here, there] = self.bases()?;
         let turn = (there.R * here.R.inverse()).log();
+        if is_held && turn.norm() <= 1e-9 {
+            return None;
+        }
         let at = |T: SE3| vector(T.p);
         let turned = match turn.norm() {
             angle if angle > 1e-9 => format!(", and turned by {}°", shown(angle.to_degrees())),
@@ -117,7 +121,7 @@ impl<'d> Places<'d> {
     }
 
     /// The joint that moves a link.
-    fn carrier(&self, k: usize, link: &str) -> Option<&str> {
+    pub fn carrier(&self, k: usize, link: &str) -> Option<&str> {
         let with = |(_, links): &(&String, &Vec<String>)| links.iter().any(|name| name == link);
         self.bodies[k].iter().find(with).map(|(joint, _)| joint.as_str())
     }
@@ -177,17 +181,33 @@ impl<'d> Places<'d> {
 
 /// Lengths, as a part of 1 m or of the larger distance, and angles by which a joint differs.
 fn size(a: &Joint, b: &Joint) -> f64 {
-    let away = (a.origin.p - b.origin.p).norm() / (1.0 + a.origin.p.norm());
-    let turned = (a.origin.R.inverse() * b.origin.R).log().norm();
     let [x, y] = [a, b].map(|joint| screw(joint.kind, SE3::identity()));
     let axes = x.iter().zip(y).map(|(x, y)| (x - y).abs() / (1.0 + x.abs()));
-    axes.fold(away.max(turned), f64::max)
+    axes.fold(distance(a.origin, b.origin), f64::max)
 }
 
-/// By how much numbers of six digits differ from those before.
+/// Whether places whose numbers have six digits differ by as little as this.
+pub fn rounded(by: f64) -> bool {
+    by > 0.0 && by <= 2e-5
+}
+
+/// By how much a joint's numbers of six digits differ from those before.
 fn rounding(a: &Joint, b: &Joint) -> Option<f64> {
     let by = size(a, b);
-    (by > 0.0 && by <= 2e-5 && a.kind.name() == b.kind.name()).then_some(by)
+    (rounded(by) && a.kind.name() == b.kind.name()).then_some(by)
+}
+
+/// How far apart two places are, as [`Cause::size`].
+pub fn distance(p: SE3, q: SE3) -> f64 {
+    ((p.p - q.p).norm() / (1.0 + p.p.norm())).max((p.R.inverse() * q.R).log().norm())
+}
+
+/// "by 0.8 m and turned by 30°".
+pub fn away(a: SE3, b: SE3) -> String {
+    let (far, turn) = ((a.p - b.p).norm(), (a.R.inverse() * b.R).log().norm());
+    let words = [(far, format!("by {} m", shown(far))), (turn, format!("turned by {}°", shown(turn.to_degrees())))];
+    let words: Vec<String> = words.into_iter().filter(|(x, _)| *x > 1e-9).map(|(_, words)| words).collect();
+    words.join(" and ")
 }
 
 /// The difference of a joint in words, and whether it has a reason; `origins` is true if its origin is the same.
@@ -208,7 +228,7 @@ fn sentence(a: &Joint, b: &Joint, origins: bool, other: &str) -> (String, bool) 
             let [here, there] = [a, b].map(|joint| vector(joint.origin.p));
             (format!("`{name}` is elsewhere in {other}: {there} instead of {here}"), false)
         }
-        None => (format!("`{name}` is elsewhere in {other}"), false),
+        None => (format!("`{name}` is elsewhere in {other}, {}", away(a.origin, b.origin)), false),
     }
 }
 
@@ -228,7 +248,8 @@ fn of_axis(a: &Joint, b: &Joint) -> Option<String> {
     is_back.then(|| "has its axis turned back by its origin, as if it were given in the parent's frame,".to_string())
 }
 
-fn of_origin(a: SE3, b: SE3) -> Option<String> {
+/// The error that makes one origin the other.
+pub fn of_origin(a: SE3, b: SE3) -> Option<String> {
     if (a.R.inverse() * b.R).log().norm() <= 1e-9 {
         let has_none = b.p == Vec3::zero() && a.p != Vec3::zero();
         return unit(a.p, b.p).or_else(|| has_none.then(|| "has no origin".to_string()));

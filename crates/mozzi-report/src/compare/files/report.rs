@@ -49,8 +49,14 @@ fn verdict(it: &FilesComparison) -> String {
     if alone == 0 && it.forces_agree() {
         return "the same forces of another robot; the causes below name the differences".to_string();
     }
+    if alone == 0 && it.base.is_some() && it.causes.is_empty() && it.is_explained() {
+        return "another robot: the base is free in one file only".to_string();
+    }
     match (alone, it.is_explained()) {
         (0, true) => "another robot; the causes below explain it".to_string(),
+        (0, false) if it.is_accounted_for() => {
+            "another robot; the causes below account for it, not all with a known reason".to_string()
+        }
         (0, false) => "another robot; not all of it is explained".to_string(),
         (1, _) => "another robot: one joint moves in one file only".to_string(),
         _ => format!("another robot: {alone} joints move in one file only"),
@@ -128,6 +134,7 @@ pub fn json(it: &FilesComparison) -> Value {
         "agrees": it.agrees(),
         "compared": it.is_compared(),
         "explained": it.is_explained(),
+        "accounted_for": it.is_compared() && it.is_accounted_for(),
         "tolerance": it.tolerance,
         "states": it.states,
         "seed": it.seed,
