@@ -25,6 +25,21 @@ impl<'a, 'py> Arguments<'a, 'py> {
         arguments
     }
 
+    /// Checks that the signature has all arguments that were given.
+    ///
+    /// # Errors
+    /// `TypeError` for another one.
+    pub fn check(given: &[(Slot, Given<'_, '_>)], signature: &Signature) -> PyResult<()> {
+        let has = |slot: Slot| signature.arguments.iter().any(|argument| argument.slot == slot);
+        match given.iter().find(|(slot, value)| value.is_some() && !has(*slot)) {
+            Some((slot, _)) => {
+                let name = slot.name().unwrap_or_default();
+                Err(wrong(signature, format_args!("got an unexpected keyword argument '{name}'")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// From positional values, and values with their names.
     ///
     /// # Errors

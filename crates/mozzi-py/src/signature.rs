@@ -39,6 +39,16 @@ macro_rules! optional {
         $(const $constant: Argument = Argument {
             slot: Slot::$slot, name: $name, default: Some($default), stub: $stub, about: [$kind, $about],
         };)*
+
+        impl Slot {
+            /// The argument's name; none of the state, whose names are the quantity's.
+            pub fn name(self) -> Option<&'static str> {
+                match self {
+                    $(Slot::$slot => Some($name),)*
+                    _ => None,
+                }
+            }
+        }
     };
 }
 optional! {

@@ -76,6 +76,9 @@ def test_mujoco(floating, random):
 def test_six_vectors():
     six = np.arange(12.0).reshape(2, 6)
     assert conventions.linear_first(six)[1].tolist() == [9, 10, 11, 6, 7, 8]
+    assert conventions.external(np.arange(6, dtype=np.uint8)).tolist() == [-3, -4, -5, 0, -1, -2]
+    with pytest.raises(TypeError, match="expected real numbers"):
+        conventions.linear_first(list("abcdef"))
     assert np.array_equal(conventions.angular_first(conventions.linear_first(six)), six)
     assert np.array_equal(conventions.from_external(conventions.external(six)), six)
     with pytest.raises(ValueError, match=r"the six-vector has shape \(3,\), expected \(..., 6\)"):

@@ -238,6 +238,11 @@ def test_rollout(robot, random, method):
     batch = mj.rollout(robot, np.stack([theta, theta]), dtheta, taus, 0.01, method)
     assert batch.theta.shape == (2, 11, robot.nq)
     assert_close(batch.dtheta[1], found.dtheta, tolerance=1e-9)
+    # the parameters' leading axes are those of the result, too, and their type is no other
+    several = np.tile(robot.parameters, (2, 1))
+    of_each = mj.rollout(robot, theta.astype(np.float32), dtheta, taus, 0.01, method, parameters=several)
+    assert of_each.theta.shape == (2, 11, robot.nq)
+    assert_close(of_each.dtheta[1], found.dtheta, tolerance=1e-4)
     loss = lambda theta, dtheta, tau: (mj.rollout(robot, theta, dtheta, tau, 0.01, method).theta[-1] ** 2).sum()
     if robot.n < 12 and method == "rk4":
         check_grads(

@@ -112,6 +112,14 @@ def test_shapes_dtypes_and_errors(ur5, random):
             lambda: ur5.jvp("mass_matrix", [theta], [[0.0] * 5]),
         ),
         ("parameters_tangent has shape", lambda: ur5.jvp("mass_matrix", [theta], [None], parameters_tangent=[1.0])),
+        ("there is no frame `nowhere`", lambda: ur5.jvp("mass_matrix", [theta], [None], frame="nowhere")),
+        ("there is no frame `nowhere`", lambda: ur5.engine("mass_matrix", "nowhere")),
+        ("there is no frame `nowhere`", lambda: ur5.compile("mass_matrix", frame="nowhere")),
     ]:
         with pytest.raises(ValueError, match=message):
             call()
+    # what the quantity's method does not take
+    with pytest.raises(TypeError, match=r"gravity_forces\(\) got an unexpected keyword argument 'base_acceleration'"):
+        ur5.jvp("gravity_forces", [theta], [None], base_acceleration=[0.0] * 6)
+    with pytest.raises(TypeError, match=r"mass_matrix\(\) got an unexpected keyword argument 'gravity'"):
+        ur5.jvp("mass_matrix", [theta], [None], gravity=[0.0, 0.0, 0.0])

@@ -10,7 +10,8 @@
 //! | [`TaskSpace`], impedance | Jᵀ(Λa + η + B𝒱_e + KX_e) | Λ𝒱̇_e + B𝒱_e + KX_e = 𝓕, applied to the environment |
 //! | `Standing`, feature `standing` | Mθ̈ + h + Jᵀf, f within the feet's friction cones | goes to 0 while the cones allow it |
 //!
-//! with e = θ_d ⊖ θ, X_e = log(T⁻¹T_d), 𝒱_e = `[Ad_T⁻¹T_d]`𝒱_d − 𝒱. [`Saturated`] wraps any of them.
+//! with e = θ_d ⊖ θ, X_e = log(T⁻¹T_d), 𝒱_e = `[Ad_T⁻¹T_d]`𝒱_d − 𝒱. The second to fourth add the forces of friction and
+//! springs, which h and η lack, the first those of springs. [`Saturated`] wraps any of them.
 
 mod computed_torque;
 mod pd_gravity;

@@ -143,9 +143,9 @@ class ClosedForm(NamedTuple):
     M: Array
     """Mass matrix, shape (n, n)."""
     c: Array
-    """Coriolis and centripetal forces, shape (n,)."""
+    """Coriolis and centripetal forces, with those of the base's twist, shape (n,)."""
     g: Array
-    """Gravity forces, shape (n,)."""
+    """Gravity forces, with those of the base's acceleration, shape (n,)."""
     tip_forces: Array
     """Forces JᵀF of the wrenches, shape (n,)."""
     friction: Array

@@ -14,7 +14,8 @@ controller          τ                                           error for an ex
 ==================  ==========================================  ============================
 
 with e = θ_d ⊖ θ, X_e = log(T⁻¹T_d), 𝒱_e = [Ad_{T⁻¹T_d}]𝒱_d − 𝒱, and 𝓕 the wrench that the frame applies to the
-environment. ``Saturated`` clamps any of them to the motors' effort limits.
+environment. ``ComputedTorque``, ``TaskSpace`` and ``Impedance`` add the forces of friction and springs, which h and η
+lack, ``PdGravity`` those of springs. ``Saturated`` clamps any of them to the motors' effort limits.
 
 >>> import mozzi
 >>> from mozzi.controllers import ComputedTorque, Saturated, tracking_error

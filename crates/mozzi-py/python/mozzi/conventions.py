@@ -44,6 +44,10 @@ def linear_first(six: Any) -> Any:
     numpy.ndarray, shape (..., 6)
     """
     six = np.asarray(six)
+    if six.dtype.kind in "bui":
+        six = six.astype(float)  # an unsigned number has no opposite
+    if six.dtype.kind != "f":
+        raise TypeError(f"the six-vector has dtype {six.dtype}, expected real numbers")
     if six.shape[-1:] != (6,):
         raise ValueError(f"the six-vector has shape {six.shape}, expected (..., 6)")
     return np.concatenate([six[..., 3:], six[..., :3]], -1)

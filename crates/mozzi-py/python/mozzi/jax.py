@@ -471,18 +471,19 @@ def rollout(
     if method not in ("rk4", "euler", "semi-implicit-euler"):
         raise ValueError(f"method is {method!r}, expected 'rk4', 'euler' or 'semi-implicit-euler'")
     _tangent.require_tree(model.constraints)
-    names = ("theta", "dtheta", "tau")
-    theta, dtheta, tau = _arrays(names, (theta, dtheta, tau))
+    names = ("theta", "dtheta", "tau", "parameters")
+    given = [theta, dtheta, tau] if parameters is None else [theta, dtheta, tau, parameters]
+    theta, dtheta, tau, *inertial = _arrays(names[: len(given)], given)
     h = jnp.asarray(step, theta.dtype)
     if h.shape != ():
         raise ValueError(f"step has shape {h.shape}, expected one number of seconds")
     if tau.ndim < 2 or tau.shape[-1] != model.n:
         raise ValueError(f"tau has shape {tau.shape}, expected (..., N, {model.n}): the torques of N steps")
     torques = jnp.moveaxis(tau, -2, 0)
-    lengths = (model.nq, model.n, model.n)
-    theta, dtheta, _ = _broadcast(
-        names, [theta, dtheta, jnp.zeros((*tau.shape[:-2], model.n), tau.dtype)], lengths, model
-    )
+    lengths = (model.nq, model.n, model.n, len(model.parameters))
+    one_tau = jnp.zeros((*tau.shape[:-2], model.n), tau.dtype)
+    theta, dtheta, *_ = _broadcast(names, [theta, dtheta, one_tau, *inertial], lengths, model)
+    parameters = inertial[0] if inertial else None
     places = model._quaternions
 
     def advance(theta: Array, u: Array) -> Array:

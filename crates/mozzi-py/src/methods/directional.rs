@@ -7,7 +7,7 @@ use crate::failure::{of_batch, of_model};
 use crate::model::PyModel;
 use crate::numpy::Element;
 use crate::results::Results;
-use crate::signature::Slot;
+use crate::signature::{Signature, Slot};
 use crate::threads::Threads;
 use mozzi::quantities::{Input, Query};
 use mozzi_engine::Direction;
@@ -64,7 +64,7 @@ impl PyModel {
     /// frame : str, optional
     ///     A link or frame, if the quantity refers to one. Default: the end effector.
     /// tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration : optional
-    ///     The environment, as for the quantity's method; it is constant.
+    ///     The environment, as for the quantity's method; it is constant. Others than that method has are a TypeError.
     /// parameters : array_like, shape (..., p), optional
     ///     Inertial parameters in the order of `Model.parameters`. Default: the model's.
     /// parameters_tangent : array_like, shape (..., p), optional
@@ -125,15 +125,16 @@ impl PyModel {
         if tangents.len() != declaration.inputs.len() {
             return Err(wrong_count("tangents", tangents.len(), &query));
         }
-        let given = Arguments::of([
+        let given = [
             (Slot::TipWrench, tip_wrench),
             (Slot::Gravity, gravity),
             (Slot::AppliedWrenches, applied_wrenches),
             (Slot::BaseTwist, base_twist),
             (Slot::BaseAcceleration, base_acceleration),
             (Slot::Parameters, parameters),
-        ]);
-        let mut environment = ArrayEnvironment::new(model, &given)?;
+        ];
+        Arguments::check(&given, &Signature::new(declaration))?;
+        let mut environment = ArrayEnvironment::new(model, &Arguments::of(given))?;
         let mut state = Vec::with_capacity(inputs.len());
         for (input, given) in declaration.inputs.iter().zip(&inputs) {
             let numbers = Numbers::new(input.name, given)?;

@@ -35,7 +35,7 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
         Lambda.len(),
         eta.len()
     );
-    let TaskMemory { J, dJ_dtheta, pivots, dense, M, h, row, columns } = memory;
+    let TaskMemory { J, dJ_dtheta, pivots, dense, M, h, Q, row, columns } = memory;
     bias_forces(model, theta, dtheta, environment, workspace, h);
     match task.coordinates {
         TaskFrame::Body => body_jacobian_rate(model, theta, dtheta, task.frame, columns),
@@ -57,14 +57,12 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     ldlt::factor(pattern, M, &mut workspace.pivots);
     ldlt::solve(pattern, M, h);
     for r in 0..k {
-        eta[r] = dot(&J[r * n..][..n], h) - dJ_dtheta[r];
-        row[..n].copy_from_slice(&J[r * n..][..n]);
-        ldlt::solve(pattern, M, &mut row[..n]);
-        for c in 0..=r {
-            Lambda[r * k + c] = dot(&J[c * n..][..n], &row[..n]); // Λ⁻¹ = J M⁻¹Jᵀ
-        }
+        let (J, Q) = (&J[r * n..][..n], &mut Q[r * n..][..n]);
+        eta[r] = dot(J, h) - dJ_dtheta[r];
+        Q.copy_from_slice(J);
+        ldlt::solve_transposed_all(pattern, M, Q);
     }
-    ldlt::factor(dense, Lambda, &mut pivots[..k]);
+    factor_rows(Q, &workspace.pivots, &mut row[..n], Lambda, &mut pivots[..k]);
     pivots[k] = S::zero();
     for (column, &d) in columns.iter().zip(&workspace.pivots) {
         pivots[k] += dot(&column.to_array(), &column.to_array()) / d;
@@ -72,6 +70,30 @@ pub fn task_space_dynamics<S: Scalar + From<C>, C: Scalar>(
     ldlt::solve(dense, Lambda, eta);
     ldlt::invert(dense, Lambda, &mut row[..k]);
 }
+}
+
+/// Overwrites the lower triangle of Λ with L and D', where LᵀD'L = Q D⁻¹Qᵀ, by Gram and Schmidt's orthogonalisation of
+/// the rows of Q. The product itself would square their condition number.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn factor_rows<S: Scalar>(Q: &mut [S], D: &[S], scaled: &mut [S], Lambda: &mut [S], pivots: &mut [S]) {
+    let (n, k) = (scaled.len(), pivots.len());
+    for r in (0..k).rev() {
+        let (above, q) = Q.split_at_mut(r * n);
+        let q = &q[..n];
+        for ((scaled, &q), &d) in scaled.iter_mut().zip(q).zip(D) {
+            *scaled = q / d;
+        }
+        let d = dot(q, scaled);
+        (pivots[r], Lambda[r * k + r]) = (d, d);
+        for s in 0..r {
+            let other = &mut above[s * n..][..n];
+            let l = dot(other, scaled) / d;
+            for (x, &q) in other.iter_mut().zip(q) {
+                *x = q.mul_add(-l, *x);
+            }
+            Lambda[r * k + s] = l;
+        }
+    }
 }
 
 /// aᵀb.

@@ -69,7 +69,9 @@ pub struct TaskMemory<S = f64> {
     pub(crate) M: Vec<S>,
     /// M⁻¹h.
     pub(crate) h: Vec<S>,
-    /// A row of J M⁻¹.
+    /// J L⁻¹ with L of M = LᵀDL, k × n by rows, then orthogonal rows.
+    pub(crate) Q: Vec<S>,
+    /// One of them times D⁻¹; a column of Λ.
     pub(crate) row: Vec<S>,
     pub(crate) columns: Vec<Twist<S>>,
 }
@@ -85,6 +87,7 @@ impl<S: Scalar> TaskMemory<S> {
             dense: Pattern::new(rows, rows, core::iter::empty()),
             M: vec![o; n * n],
             h: vec![o; n],
+            Q: vec![o; rows * n],
             row: vec![o; n.max(rows)],
             columns: vec![Twist::zero(); n],
         }
@@ -98,7 +101,8 @@ impl<S: Scalar> TaskMemory<S> {
     /// Every number NaN.
     pub(crate) fn fill_nan(&mut self) {
         let nan = S::from_f64(f64::NAN);
-        for list in [&mut self.J, &mut self.dJ_dtheta, &mut self.pivots, &mut self.M, &mut self.h, &mut self.row] {
+        let TaskMemory { J, dJ_dtheta, pivots, M, h, Q, row, .. } = self;
+        for list in [J, dJ_dtheta, pivots, M, h, Q, row] {
             list.fill(nan);
         }
         self.columns.fill(Twist::from_array([nan; 6]));

@@ -114,6 +114,38 @@ mod tests {
     }
 
     #[test]
+    fn next_to_a_singularity_the_books_formula_still_holds() {
+        let model = chain(6);
+        let (frame, environment) = (model.end_effector().expect("named"), model.environment());
+        let [mut theta, dtheta, _] = state(&model, 8);
+        // from a random state to where det J changes its sign
+        let task = Task::all(frame, TaskFrame::Body);
+        let found = |theta: &[f64]| model.task_space_dynamics(theta, &dtheta, task, &environment);
+        let det = |angle: f64, theta: &mut Vec<f64>| {
+            theta[4] = angle;
+            found(theta).map_or(0.0, |found| found.J.determinant())
+        };
+        let (mut low, mut high) = (theta[4], theta[4]);
+        while det(low, &mut theta) * det(high, &mut theta) > 0.0 {
+            high += 0.01;
+        }
+        while high - low > 1e-9 {
+            let middle = (low + high) / 2.0;
+            if det(low, &mut theta) * det(middle, &mut theta) > 0.0 { low = middle } else { high = middle }
+        }
+        for away in [1e-4, 1e-6, 3e-8] {
+            theta[4] = low - away;
+            let found = found(&theta).expect("regular");
+            let inverse = found.J.clone().try_inverse().expect("regular");
+            let M = model.mass_matrix(&theta).expect("lengths");
+            let Lambda = inverse.transpose() * M * &inverse;
+            let error = (&found.Lambda - &Lambda).amax() / Lambda.amax();
+            assert!(error < 1e-13 / away, "{away}: {error:e}");
+            assert!(found.Lambda.clone().cholesky().is_some() || away < 1e-7, "{away}: not positive definite");
+        }
+    }
+
+    #[test]
     fn a_singular_task_answers_with_its_singular_values() {
         let model = chain(4);
         let [theta, dtheta, _] = state(&model, 3);
