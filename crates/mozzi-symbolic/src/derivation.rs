@@ -28,6 +28,8 @@ pub struct Derivation {
     /// Its outputs.
     pub formulas: Vec<Formula>,
     pub(crate) names: Vec<Expression>,
+    /// The letter of the names, which no other name has.
+    pub(crate) letter_of_names: &'static str,
     /// The numbers of the state, by input.
     pub(crate) inputs: Vec<(&'static str, Vec<Id>)>,
     /// Angles that were read as multiples of π, in multiples.

@@ -139,7 +139,9 @@ pub(crate) fn finished(
     (names_of_inputs, inputs): (&[&'static str], &[Vec<Symbol>]),
     prove: impl Fn(&[Formula], &[Expression]) -> Result<(), Error>,
 ) -> Result<Derivation, Error> {
-    let names = if options.names { cse::name(&mut formulas) } else { Vec::new() };
+    let letter = with_table(|table| cse::free_letter(table, names_of_inputs, &formulas));
+    let letter = letter.filter(|_| options.names);
+    let names = letter.map_or(Vec::new(), |_| cse::name(&mut formulas));
     prove(&formulas, &names)?;
     let id = |x: &Symbol| x.single_atom().unwrap_or_default();
     let ids = names_of_inputs.iter().zip(inputs).map(|(of, all)| (*of, all.iter().map(id).collect())).collect();
@@ -150,6 +152,7 @@ pub(crate) fn finished(
         quantity,
         formulas,
         names,
+        letter_of_names: letter.unwrap_or_default(),
         inputs: ids,
         angles,
         angle_error,

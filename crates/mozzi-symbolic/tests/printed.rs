@@ -123,6 +123,26 @@ fn python_computes_what_the_kernel_computes() {
     }
     let theta = [0.3, -1.2, 1.4, -0.5, 0.9, 2.0];
     let model = crate::model(embedded("ur5"));
+    for quantity in ["mass_matrix_product_derivative", "inverse_dynamics_vjp"] {
+        let robot = embedded("two_link_planar");
+        let mut script = of(robot, quantity, &options(Symbols::ALL, true)).print(Language::Python);
+        let query = mozzi::quantities::Query::named(quantity).expect(quantity);
+        let vectors = [[0.3, 0.8], [-1.1, 0.6], [0.7, 1.9], [3.0, 5.0]];
+        let inputs = query.declaration().inputs.len();
+        let inputs: Vec<&[f64]> = vectors[..inputs - 1].iter().chain(&vectors[3..]).map(|x| &x[..]).collect();
+        let model = crate::model(robot);
+        let expected = model.compute(query, &inputs, &model.environment()).expect("sound").concat();
+        let given: Vec<String> = inputs.iter().map(|x| format!("{x:?}")).collect();
+        script += &format!("from numpy import hstack, ravel\nout = {quantity}({})\n", given.join(", "));
+        script += "print(*(hstack(out) if isinstance(out, tuple) else ravel(out)))\n";
+        let output = Command::new(&python).args(["-c", &script]).output().expect("Python runs");
+        let said = String::from_utf8_lossy(&output.stdout);
+        let found: Vec<f64> = said.split_whitespace().map(|x| x.parse().expect("a number")).collect();
+        assert_eq!(found.len(), expected.len(), "{}", String::from_utf8_lossy(&output.stderr));
+        for (x, y) in found.iter().zip(&expected) {
+            assert!((x - y).abs() < 1e-12 * (1.0 + y.abs()), "{quantity}: {x} instead of {y}");
+        }
+    }
     for names in [false, true] {
         let mut script = of(embedded("ur5"), "M", &options(Symbols::NONE, names)).print(Language::Python);
         script.push_str(&format!("print(*mass_matrix({theta:?}).ravel())\n"));
@@ -135,6 +155,34 @@ fn python_computes_what_the_kernel_computes() {
             assert!((x - expected[(k / 6, k % 6)]).abs() < 1e-7 * expected.amax(), "{k}: {x}");
         }
     }
+}
+
+/// Named sub-expressions have names of their own: a vector x has entries x₁, x₂.
+#[test]
+fn each_name_is_assigned_once() {
+    let robot = embedded("two_link_planar");
+    let mut count = 0;
+    for declared in mozzi::quantities::LIST {
+        for symbols in [Symbols::ALL, Symbols::NONE] {
+            let Ok(found) = crate::attempt(robot, declared.name, &options(symbols, true)) else { continue };
+            for language in [Language::Text, Language::Python, Language::Sympy, Language::Matlab, Language::Julia] {
+                let page = found.print(language);
+                let mut names: Vec<&str> = page.lines().filter_map(assigned).flatten().collect();
+                let all = names.len();
+                names.sort_unstable();
+                names.dedup();
+                assert_eq!(names.len(), all, "{} as {language:?}:\n{page}", declared.name);
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 90, "{count} derivations");
+}
+
+/// The names on the left of an assignment: none of a definition or of an entry of the text's legend.
+fn assigned(line: &str) -> Option<impl Iterator<Item = &str>> {
+    let (left, _) = line.rsplit_once(" = ").filter(|(left, _)| !left.contains("function"))?;
+    Some(left.split(" = ").flat_map(|part| part.split(", ")).map(|name| name.trim_end_matches(',').trim()))
 }
 
 /// An arm's M and g take less than two seconds where the test is compiled with little optimization, too.

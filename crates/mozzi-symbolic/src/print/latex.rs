@@ -68,9 +68,6 @@ impl Style for Latex {
             false => format!("{}_{{{}}}", dotted(name.letter, name.dots), below.join(",")),
         }
     }
-    fn named(&self, k: usize) -> String {
-        format!("x_{{{}}}", k + 1)
-    }
     fn sine(&self, is_cosine: bool, angle: &str, is_single: bool, power: i32) -> String {
         let function = if is_cosine { r"\cos" } else { r"\sin" };
         let power = if power == 1 { String::new() } else { format!("^{{{power}}}") };
@@ -136,7 +133,7 @@ fn symbols(legend: &[Meaning]) -> String {
 
 /// The recursion, part by part, in LaTeX or Markdown.
 pub(crate) fn steps(steps: &Steps, is_markdown: bool) -> String {
-    let printer = Printer { style: &Latex, table: &steps.table };
+    let printer = Printer { style: &Latex, table: &steps.table, letter: "" };
     let mut page = String::new();
     for step in &steps.steps {
         if let Some(title) = &step.title {
@@ -150,10 +147,10 @@ pub(crate) fn steps(steps: &Steps, is_markdown: bool) -> String {
 
 /// Each output as a formula without delimiters.
 pub(crate) fn formulas(derivation: &Derivation) -> Vec<String> {
-    let printer = Printer { style: &Latex, table: &derivation.table };
+    let printer = Printer::of(derivation, &Latex);
     let mut all = Vec::new();
     if !derivation.names.is_empty() {
-        let line = |(k, name): (usize, &Expression)| format!("{} &= {}", Latex.named(k), printer.expression(name));
+        let line = |(k, name): (usize, &Expression)| format!("{} &= {}", printer.named(k), printer.expression(name));
         let lines: Vec<String> = derivation.names.iter().enumerate().map(line).collect();
         all.push(format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n")));
     }

@@ -62,7 +62,6 @@ impl Steps {
 pub(crate) trait Style {
     fn number(&self, x: &Rational) -> String;
     fn name(&self, name: &Name) -> String;
-    fn named(&self, k: usize) -> String;
     /// A sine or cosine of an angle, to a power; `is_single` if the angle is one name.
     fn sine(&self, is_cosine: bool, angle: &str, is_single: bool, power: i32) -> String;
     fn root(&self, n: u64) -> String;
@@ -80,17 +79,29 @@ pub(crate) trait Style {
 pub(crate) struct Printer<'a, S> {
     pub style: &'a S,
     pub table: &'a Table,
+    /// The letter of named sub-expressions.
+    pub letter: &'static str,
 }
 
-impl<S: Style> Printer<'_, S> {
+impl<'a, S: Style> Printer<'a, S> {
+    /// A printer of a derivation's expressions.
+    pub fn of(derivation: &'a Derivation, style: &'a S) -> Self {
+        Printer { style, table: &derivation.table, letter: derivation.letter_of_names }
+    }
+
+    /// The name of a sub-expression: x₁ for the first.
+    pub fn named(&self, k: usize) -> String {
+        self.style.name(&Name::new(self.letter, k + 1, ""))
+    }
+
     pub fn expression(&self, expression: &Expression) -> String {
         match expression {
             Expression::Number(x) => self.style.number(x),
             Expression::Atom(id) => self.atom(*id, 1),
-            Expression::Named(k) => self.style.named(*k),
+            Expression::Named(k) => self.named(*k),
             Expression::Power(base, k) => match &**base {
                 Expression::Atom(id) => self.atom(*id, *k),
-                Expression::Named(name) => self.style.power(&self.style.named(*name), *k),
+                Expression::Named(name) => self.style.power(&self.named(*name), *k),
                 other => self.style.power(&format!("({})", self.expression(other)), *k),
             },
             Expression::Product(x, factors) => self.product(x, factors),

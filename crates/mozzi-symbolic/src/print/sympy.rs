@@ -18,9 +18,6 @@ impl Style for Sympy {
     fn name(&self, name: &Name) -> String {
         plain_name(name)
     }
-    fn named(&self, k: usize) -> String {
-        format!("x{}", k + 1)
-    }
     fn sine(&self, is_cosine: bool, angle: &str, _: bool, power: i32) -> String {
         let function = if is_cosine { "cos" } else { "sin" };
         self.power(&format!("{function}({angle})"), power)
@@ -53,7 +50,7 @@ fn exponent(k: i32) -> String {
 }
 
 pub(crate) fn module(derivation: &Derivation) -> String {
-    let printer = Printer { style: &Sympy, table: &derivation.table };
+    let printer = Printer::of(derivation, &Sympy);
     let mut lines =
         vec!["from sympy import Matrix, Rational, cos, pi, sign, sin, sqrt, symbols".to_string(), String::new()];
     lines.extend(angles(&derivation.angles).map(|note| format!("# {note}")));
@@ -73,7 +70,7 @@ pub(crate) fn module(derivation: &Derivation) -> String {
     let values: Vec<String> = derivation.legend.iter().map(value).collect();
     lines.extend([format!("values = {{{}}}  # of the file", values.join(", ")), String::new()]);
     for (k, name) in derivation.names.iter().enumerate() {
-        lines.push(format!("{} = {}", Sympy.named(k), printer.expression(name)));
+        lines.push(format!("{} = {}", printer.named(k), printer.expression(name)));
     }
     for (k, denominator) in derivation.denominators() {
         lines.push(format!("{} = {}", delta(derivation.denominator_name(k)), printer.expression(denominator)));

@@ -49,9 +49,6 @@ impl Style for Text {
         };
         format!("{}{number}{part}", dotted(name.letter, name.dots))
     }
-    fn named(&self, k: usize) -> String {
-        format!("x{}", below(k + 1))
-    }
     fn sine(&self, is_cosine: bool, angle: &str, is_single: bool, power: i32) -> String {
         let function = if is_cosine { "cos" } else { "sin" };
         let power = if power == 1 { String::new() } else { above(power) };
@@ -137,10 +134,10 @@ fn pieces(line: &str) -> impl Iterator<Item = &str> {
 
 pub(crate) fn page(derivation: &Derivation) -> String {
     let style = Text { has_fractions: derivation.has_fractions };
-    let printer = Printer { style: &style, table: &derivation.table };
+    let printer = Printer::of(derivation, &style);
     let mut lines = Vec::new();
     for (k, name) in derivation.names.iter().enumerate() {
-        lines.push(format!("{} = {}", style.named(k), minus(&printer.expression(name))));
+        lines.push(format!("{} = {}", printer.named(k), minus(&printer.expression(name))));
     }
     for formula in &derivation.formulas {
         let Letter { letter, dots, frame } = derivation.letter(formula);
@@ -161,7 +158,7 @@ pub(crate) fn page(derivation: &Derivation) -> String {
 /// The recursion, part by part.
 pub(crate) fn steps(steps: &Steps) -> String {
     let style = Text { has_fractions: steps.has_fractions };
-    let printer = Printer { style: &style, table: &steps.table };
+    let printer = Printer { style: &style, table: &steps.table, letter: "" };
     let mut lines = Vec::new();
     for step in &steps.steps {
         if let Some(title) = &step.title {
