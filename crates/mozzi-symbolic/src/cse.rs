@@ -1,12 +1,9 @@
 //! Names for sub-expressions that occur more than once: equal ones are one node; then pairs of factors or terms that
 //! several nodes share become nodes, the most frequent first.
 
-use crate::atom::Id;
 use crate::derivation::Formula;
 use crate::expression::Expression;
-use crate::letters::plain_name;
 use crate::rational::Rational;
-use crate::table::Table;
 use std::collections::{BTreeMap, HashMap};
 
 /// A node; the factors and terms are sorted.
@@ -201,12 +198,8 @@ impl Graph {
 /// Letters of names: the first that is free is taken.
 const LETTERS: [&str; 3] = ["x", "z", "y"];
 
-/// A letter that with a number is the name of no symbol, input or output: x₁ may be an entry of a vector x. Without one
-/// nothing is named.
-pub(crate) fn free_letter(table: &Table, inputs: &[&str], formulas: &[Formula]) -> Option<&'static str> {
-    let symbols = (0..table.len() as Id).filter_map(|id| table.name(id)).map(plain_name);
-    let others = inputs.iter().copied().chain(formulas.iter().map(|formula| formula.name)).map(String::from);
-    let taken: Vec<String> = symbols.chain(others).collect();
+/// A letter that with a number is none of these names: x₁ may be an entry of a vector x. Without one nothing is named.
+pub(crate) fn free_letter(taken: &[String]) -> Option<&'static str> {
     let is_numbered = |name: &String, letter: &str| {
         name.strip_prefix(letter).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()))
     };

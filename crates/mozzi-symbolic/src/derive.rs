@@ -5,7 +5,7 @@ use crate::atom::Class;
 use crate::collect::Grouping;
 use crate::constrained::{self, Parts};
 use crate::cse;
-use crate::derivation::{Derivation, Formula};
+use crate::derivation::{Derivation, Formula, plain_names};
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL, MOST_LINKS};
 use crate::expression::Expression;
 use crate::fraction::Fraction;
@@ -139,8 +139,8 @@ pub(crate) fn finished(
     (names_of_inputs, inputs): (&[&'static str], &[Vec<Symbol>]),
     prove: impl Fn(&[Formula], &[Expression]) -> Result<(), Error>,
 ) -> Result<Derivation, Error> {
-    let letter = with_table(|table| cse::free_letter(table, names_of_inputs, &formulas));
-    let letter = letter.filter(|_| options.names);
+    let taken = with_table(|table| plain_names(table, names_of_inputs.iter().copied(), &formulas));
+    let letter = cse::free_letter(&taken).filter(|_| options.names);
     let names = letter.map_or(Vec::new(), |_| cse::name(&mut formulas));
     prove(&formulas, &names)?;
     let id = |x: &Symbol| x.single_atom().unwrap_or_default();

@@ -44,7 +44,7 @@ pub use error::Error;
 pub use expression::Operations;
 pub use inverse::is_fraction;
 pub use parameters::{Equal, Meaning, Symbols};
-pub use print::Language;
+pub use print::{Language, print_all};
 pub use rational::Rational;
 pub use read::{At, NotRead, Part, agree, read_urdf};
 pub use steps::{Step, Steps, steps};

@@ -2,7 +2,7 @@
 
 use crate::robots::all;
 use crate::{embedded, of};
-use mozzi_symbolic::{Language, Options, Symbols};
+use mozzi_symbolic::{Language, Options, Symbols, print_all};
 use pulldown_latex::{Parser, Storage};
 use std::process::Command;
 use std::time::Instant;
@@ -177,6 +177,47 @@ fn each_name_is_assigned_once() {
         }
     }
     assert!(count > 90, "{count} derivations");
+}
+
+/// A SymPy module of all quantities: no name has two meanings, and each expression is that of its own module.
+#[test]
+fn a_module_of_several_quantities_keeps_its_names() {
+    let robot = embedded("two_link_planar");
+    for (symbols, names) in [(Symbols::ALL, false), (Symbols::NONE, true)] {
+        let options = options(symbols, names);
+        let base = mozzi_symbolic::base_parameters(&crate::model(robot), Some(robot), &options).expect("derived");
+        let of =
+            |declared: &'static mozzi::quantities::Declaration| crate::attempt(robot, declared.name, &options).ok();
+        let has_entries = |found: &mozzi_symbolic::Derivation| !found.formulas[0].shape.contains(&0);
+        let all: Vec<_> = mozzi::quantities::LIST.iter().filter_map(of).filter(has_entries).chain([base]).collect();
+        let module = print_all(&all, Language::Sympy);
+        let mut assigned: Vec<&str> = module.lines().filter_map(assigned).flatten().collect();
+        let count = assigned.len();
+        assigned.sort_unstable();
+        assigned.dedup();
+        assert_eq!(assigned.len(), count, "{module}");
+        for part in ["\ninverse_dynamics_vjp_d_theta = ", "\npi_b = ", "\nmass_matrix_inverse = "] {
+            assert!(module.contains(part), "{part} in {module}");
+        }
+        let Some(python) = crate::lagrange::python() else { continue };
+        let mut script = format!("{module}\ndef at_file(x): return [y.subs(values) for y in x]\n");
+        for single in all.iter().filter(|found| ["mass_matrix", "momentum_vjp"].contains(&found.quantity)) {
+            let text = format!("{:?}", single.print(Language::Sympy));
+            script += &format!("own = {{}}\nexec({text}, own)\n");
+            for formula in &single.formulas {
+                let (one, several) = match single.formulas.len() {
+                    1 => (single.quantity, single.quantity.to_string()),
+                    _ => (formula.name, format!("{}_{}", single.quantity, formula.name)),
+                };
+                script += &format!("assert at_file({several}) == at_file(own['{one}']), '{several}'\n");
+            }
+        }
+        let file = std::env::temp_dir().join(format!("mozzi-module-{}-{names}.py", std::process::id()));
+        std::fs::write(&file, &script).expect("written");
+        let output = Command::new(&python).arg(&file).output().expect("Python runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::remove_file(file).expect("removed");
+    }
 }
 
 /// The names on the left of an assignment: none of a definition or of an entry of the text's legend.

@@ -11,7 +11,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::quantities::{LIST, Of, Query};
 use mozzi::{Model, Task};
 use mozzi_symbolic::{
-    Collect, Derivation, Equal, Error, Language, Options, Symbols, base_parameters, derive, is_fraction, steps,
+    Collect, Derivation, Equal, Error, Language, Options, Symbols, base_parameters, derive, is_fraction, print_all,
+    steps,
 };
 use serde_json::{Value, json};
 use std::ffi::OsStr;
@@ -188,8 +189,7 @@ pub fn run(arguments: &DeriveArguments) -> Result<String> {
     if arguments.robot.json {
         return Ok(object(&model, &derivations));
     }
-    let pages: Vec<String> = derivations.iter().map(|derivation| derivation.print(arguments.language)).collect();
-    Ok(pages.join("\n"))
+    Ok(print_all(&derivations, arguments.language))
 }
 
 /// By the file's decimals, else by the shortest decimals of the robot's numbers, with a note.

@@ -133,7 +133,7 @@ fn symbols(legend: &[Meaning]) -> String {
 
 /// The recursion, part by part, in LaTeX or Markdown.
 pub(crate) fn steps(steps: &Steps, is_markdown: bool) -> String {
-    let printer = Printer { style: &Latex, table: &steps.table, letter: "" };
+    let printer = Printer { style: &Latex, table: &steps.table, letter: "", first: 0 };
     let mut page = String::new();
     for step in &steps.steps {
         if let Some(title) = &step.title {

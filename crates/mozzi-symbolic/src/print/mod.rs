@@ -40,10 +40,24 @@ impl Derivation {
             Language::Text => text::page(self),
             Language::Latex => latex::page(self),
             Language::Markdown => latex::markdown(self),
-            Language::Sympy => sympy::module(self),
+            Language::Sympy => sympy::module(&[self]),
             Language::Python | Language::Matlab | Language::Julia => code::function(self, language),
         }
     }
+}
+
+/// Derivations of one robot as one text: in SymPy a module of all, in which no name is assigned twice.
+pub fn print_all(derivations: &[Derivation], language: Language) -> String {
+    if language == Language::Sympy {
+        let mut different: Vec<&Derivation> = Vec::new();
+        for derivation in derivations {
+            if !different.iter().any(|known| known.quantity == derivation.quantity) {
+                different.push(derivation);
+            }
+        }
+        return sympy::module(&different);
+    }
+    derivations.iter().map(|derivation| derivation.print(language)).collect::<Vec<_>>().join("\n")
 }
 
 impl Steps {
@@ -79,19 +93,20 @@ pub(crate) trait Style {
 pub(crate) struct Printer<'a, S> {
     pub style: &'a S,
     pub table: &'a Table,
-    /// The letter of named sub-expressions.
+    /// The letter of named sub-expressions, and how many have numbers before the first.
     pub letter: &'static str,
+    pub first: usize,
 }
 
 impl<'a, S: Style> Printer<'a, S> {
     /// A printer of a derivation's expressions.
     pub fn of(derivation: &'a Derivation, style: &'a S) -> Self {
-        Printer { style, table: &derivation.table, letter: derivation.letter_of_names }
+        Printer { style, table: &derivation.table, letter: derivation.letter_of_names, first: 0 }
     }
 
     /// The name of a sub-expression: x₁ for the first.
     pub fn named(&self, k: usize) -> String {
-        self.style.name(&Name::new(self.letter, k + 1, ""))
+        self.style.name(&Name::new(self.letter, self.first + k + 1, ""))
     }
 
     pub fn expression(&self, expression: &Expression) -> String {

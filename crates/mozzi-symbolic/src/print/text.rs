@@ -158,7 +158,7 @@ pub(crate) fn page(derivation: &Derivation) -> String {
 /// The recursion, part by part.
 pub(crate) fn steps(steps: &Steps) -> String {
     let style = Text { has_fractions: steps.has_fractions };
-    let printer = Printer { style: &style, table: &steps.table, letter: "" };
+    let printer = Printer { style: &style, table: &steps.table, letter: "", first: 0 };
     let mut lines = Vec::new();
     for step in &steps.steps {
         if let Some(title) = &step.title {
