@@ -31,6 +31,8 @@ mod print;
 mod proof;
 mod rational;
 mod read;
+mod rotation;
+mod rounded;
 mod sines;
 mod steps;
 mod symbol;

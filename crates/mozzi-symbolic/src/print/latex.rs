@@ -1,7 +1,7 @@
 //! LaTeX with amsmath.
 
 use super::legend::angles;
-use super::{Letter, Printer, Style};
+use super::{Letter, Printer, Style, approximate};
 use crate::atom::Name;
 use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
@@ -53,7 +53,10 @@ impl Style for Latex {
         let (a, b) = x.parts();
         match x.to_decimal() {
             Some(text) if x.integer().is_some() || ![2, 4, 8].contains(&b.to_u64().unwrap_or(0)) => text,
-            _ => format!(r"\tfrac{{{a}}}{{{b}}}"),
+            _ => match approximate(x) {
+                Some(text) => text.replace('…', r"\ldots "),
+                None => format!(r"\tfrac{{{a}}}{{{b}}}"),
+            },
         }
     }
     fn name(&self, name: &Name) -> String {

@@ -72,6 +72,12 @@ impl Steps {
     }
 }
 
+/// The digits of a fraction that is too long to read, with dots for the further ones.
+fn approximate(x: &Rational) -> Option<String> {
+    let (a, b) = x.parts();
+    (a.bits().max(b.bits()) > 40).then(|| format!("{}…", x.to_f64()))
+}
+
 /// How a language writes the parts of an expression.
 pub(crate) trait Style {
     fn number(&self, x: &Rational) -> String;

@@ -1,7 +1,7 @@
 //! Text with the book's letters.
 
 use super::legend::legend;
-use super::{Letter, Printer, Style};
+use super::{Letter, Printer, Style, approximate};
 use crate::atom::Name;
 use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
@@ -37,7 +37,7 @@ impl Style for Text {
             (true, Rational::Small(3, 4)) => "¾".into(),
             (true, Rational::Small(1, 8)) => "⅛".into(),
             (true, _) => format!("({a}/{b})"),
-            _ => x.to_decimal().unwrap_or_else(|| format!("({x})")),
+            _ => x.to_decimal().or_else(|| approximate(x)).unwrap_or_else(|| format!("({x})")),
         }
     }
     fn name(&self, name: &Name) -> String {
