@@ -9,6 +9,7 @@ use crate::derive::{Collect, Options, described, finished, written};
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL};
 use crate::expression::Expression;
 use crate::kernel::{Kernel, check_fault};
+use crate::letters::printable;
 use crate::parameters::{Meaning, Symbols};
 use crate::polynomial::Polynomial;
 use crate::proof::{OF_BOUND, at_points, random_positions, value_at};
@@ -58,7 +59,7 @@ fn parameters(model: &Model, symbolic: &Model<Symbol>) -> Vec<Meaning> {
     let named = (0..bodies).flat_map(body).chain((0..model.places().len()).flat_map(joint));
     let named = named.chain((0..rotors).map(rotor));
     let all = named.zip(symbolic.parameters()).zip(model.parameters()).zip(model.parameter_names());
-    let meaning = |((((name, class, unit), exact), value), place)| {
+    let meaning = |((((name, class, unit), exact), value), place): (_, String)| {
         let exact: Polynomial = Symbol::polynomial(exact);
         let value = with_table(|table| file_value(table, &exact))
             .or_else(|| Rational::decimal(&format!("{value}")))
@@ -66,7 +67,7 @@ fn parameters(model: &Model, symbolic: &Model<Symbol>) -> Vec<Meaning> {
         let atom = Atom::Parameter { name: Name::clone(&name), class, value: value.clone() };
         let id = with_table(|table| table.id(atom));
         let about = if name.letter == "I" { " about the origin of its frame" } else { "" };
-        Meaning { name, class, value, unit, places: vec![format!("{place}{about}")], id }
+        Meaning { name, class, value, unit, places: vec![format!("{}{about}", printable(&place))], id }
     };
     all.map(meaning).collect()
 }

@@ -1,7 +1,7 @@
 //! The robot's numbers as symbols with the book's names, or as exact numbers.
 
 use crate::atom::{Atom, Class, Id, Name};
-use crate::letters::plain_name;
+use crate::letters::{plain_name, printable};
 use crate::rational::Rational;
 use crate::read::{At, NotRead, Part, agree, read_urdf};
 use crate::rotation::{exact, exact_axis};
@@ -273,7 +273,7 @@ impl Parameters {
 
     fn symbol(&mut self, at: At, name: Name, class: Class, value: Rational, unit: &'static str) -> Symbol {
         let (size, is_negative) = (value.abs(), value.is_negative());
-        let place = format!("{} {}", at.name, describe(at.part));
+        let place = format!("{} {}", printable(at.name), describe(at.part));
         let is_equal = |known: &&mut Meaning| {
             let is_near = match self.equal {
                 Equal::Separate => known.places.contains(&place), // one number of two readings

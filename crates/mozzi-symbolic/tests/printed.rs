@@ -11,6 +11,20 @@ fn options(symbols: Symbols, names: bool) -> Options {
     Options { symbols, names, ..Options::default() }
 }
 
+/// Reads each formula; the number of them.
+fn check_latex(page: &str) -> usize {
+    let mut count = 0;
+    for piece in page.split(r"\[").skip(1) {
+        let (formula, _) = piece.split_once(r"\]").expect("closed");
+        let storage = Storage::new();
+        for event in Parser::new(formula, &storage) {
+            event.unwrap_or_else(|error| panic!("{error}\n{formula}"));
+        }
+        count += 1;
+    }
+    count
+}
+
 /// A typesetter of its own reads every formula; TeX does, too, but is large.
 #[test]
 fn latex_is_typeset() {
@@ -18,14 +32,8 @@ fn latex_is_typeset() {
     let mut check = |robot: &str, text: &str, quantity: &str, options: &Options| {
         let page = of(text, quantity, options).print(Language::Latex);
         assert!(page.is_ascii(), "{page}");
-        for piece in page.split(r"\[").skip(1) {
-            let (formula, _) = piece.split_once(r"\]").expect("closed");
-            let storage = Storage::new();
-            for event in Parser::new(formula, &storage) {
-                event.unwrap_or_else(|error| panic!("{robot} {quantity}: {error}\n{formula}"));
-            }
-            count += 1;
-        }
+        println!("{robot} {quantity}");
+        count += check_latex(&page);
     };
     for (name, text) in all() {
         for quantity in ["M", "C", "c", "g", "tau", "T", "J_b", "kinetic_energy", "M_inv"] {
@@ -69,8 +77,38 @@ fn links_keep_their_own_symbols() {
     let names: std::collections::BTreeSet<String> = derived.legend.iter().map(|meaning| meaning.plain_name()).collect();
     assert_eq!(names.len(), derived.legend.len(), "{names:?}");
     assert!(derived.print(Language::Latex).contains(r"50\%\$"));
+    assert!(derived.print(Language::Text).contains("m₁_load_1") && !derived.print(Language::Text).contains("load−1"));
     let root = of(&text.replace("0 1 0", "1 1 0"), "g", &options(Symbols::NONE, false)).print(Language::Text);
     assert!(root.contains("√2 "), "{root}");
+}
+
+/// A name of the file stays on its line: a line break would end a comment of code.
+#[test]
+fn names_of_links_cannot_leave_their_place() {
+    for name in ["tool&#10;print(1)", "tool&#13;|x", "a^b~c", "tool\u{2028}x", "%}", "a{\\"] {
+        let link = |name: &str| {
+            format!(
+                "<link name=\"{name}\"><inertial><origin xyz=\"0.3 0 0\"/><mass value=\"2\"/><inertia ixx=\"0\" \
+                 iyy=\"0\" izz=\"0\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
+            )
+        };
+        let on = |kind: &str, child: &str, parent: &str| {
+            format!(
+                "<joint name=\"{child}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+                 <axis xyz=\"0 1 0\"/></joint>"
+            )
+        };
+        let parts = ["<link name=\"base\"/>".into(), link("arm"), on("continuous", "arm", "base")];
+        let text = format!("<robot name=\"r\">{}{}{}</robot>", parts.concat(), link(name), on("fixed", name, "arm"));
+        let found = of(&text, "M", &options(Symbols::ALL, false));
+        let plain = of(&text.replace(name, "tool"), "M", &options(Symbols::ALL, false));
+        for language in [Language::Text, Language::Markdown, Language::Sympy, Language::Python, Language::Matlab] {
+            let (page, expected) = (found.print(language), plain.print(language));
+            assert_eq!(page.lines().count(), expected.lines().count(), "{language:?}: {page}");
+            assert!(!page.chars().any(|c| c.is_control() && c != '\n' || c == '\u{2028}'), "{page}");
+        }
+        check_latex(&found.print(Language::Latex));
+    }
 }
 
 /// A robot of one joint: θ is a tuple of one symbol.

@@ -5,6 +5,7 @@ use super::{Letter, Printer, Style, approximate};
 use crate::atom::Name;
 use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
+use crate::letters::printable;
 use crate::parameters::Meaning;
 use crate::rational::Rational;
 use crate::steps::Steps;
@@ -37,15 +38,21 @@ fn dotted(text: &str, dots: u8) -> String {
     }
 }
 
+/// True for x, zz, ωx, and for links of so short names.
+fn is_axis(part: &str) -> bool {
+    part.chars().count() <= 2 && part.chars().all(|c| c.is_ascii_alphanumeric() || c == 'ω' || c == '\'')
+}
+
 /// The text of a link's name.
 fn escaped(text: &str) -> String {
     let each = |c: char| match c {
         '_' | '%' | '$' | '#' | '&' | '{' | '}' => format!(r"\{c}"),
         '\\' => r"\backslash ".into(),
-        '^' | '~' => format!(r"\{c}{{}}"),
+        '^' => r"\wedge ".into(), // accents of text are none of formulas
+        '~' => r"\sim ".into(),
         c => c.to_string(),
     };
-    text.chars().map(each).collect()
+    printable(text).chars().map(each).collect()
 }
 
 impl Style for Latex {
@@ -61,8 +68,8 @@ impl Style for Latex {
     }
     fn name(&self, name: &Name) -> String {
         let part = match &name.part[..] {
-            part if part.len() > 2 => format!(r"\mathrm{{{}}}", escaped(part)),
-            part => part.replace('ω', r"\omega "),
+            part if is_axis(part) => part.replace('ω', r"\omega "),
+            part => format!(r"\mathrm{{{}}}", escaped(part)),
         };
         let number = name.number.map(|n| n.to_string());
         let below: Vec<String> = number.into_iter().chain([part]).filter(|part| !part.is_empty()).collect();
@@ -128,7 +135,8 @@ fn symbols(legend: &[Meaning]) -> String {
         page.push_str("| symbol | in the file | unit | where |\n|---|---|---|---|\n");
     }
     for meaning in legend {
-        let (name, places) = (Latex.name(&meaning.name), meaning.places.join("; "));
+        let name = Latex.name(&meaning.name);
+        let places = meaning.places.join("; ").replace('|', r"\|").replace('<', r"\<");
         page.push_str(&format!("| ${name}$ | {} | {} | {places} |\n", meaning.value, meaning.unit));
     }
     page

@@ -42,10 +42,11 @@ impl Style for Text {
     }
     fn name(&self, name: &Name) -> String {
         let number = name.number.map_or(String::new(), below);
-        let part = match (&name.part[..], name.number) {
+        let clean = name.part.replace(|c: char| !c.is_alphanumeric() && c != '\'', "_"); // a hyphen is no minus
+        let part = match (&clean[..], name.number) {
             ("", _) => String::new(),
             (part, Some(_)) if part.len() <= 2 => part.to_string(),
-            (part, _) => format!("_{}", part.replace(',', "_")),
+            (part, _) => format!("_{part}"),
         };
         format!("{}{number}{part}", dotted(name.letter, name.dots))
     }
