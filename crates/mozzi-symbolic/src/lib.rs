@@ -44,7 +44,7 @@ pub use derivation::{Derivation, Formula};
 pub use derive::{Collect, Options, derive};
 pub use error::Error;
 pub use expression::Operations;
-pub use inverse::is_fraction;
+pub use inverse::{dependent_rows, is_fraction};
 pub use parameters::{Equal, Meaning, Symbols};
 pub use print::{Language, print_all};
 pub use rational::Rational;
