@@ -151,6 +151,20 @@ fn rounded_angles_and_axes_are_derived() {
     assert!((found - model.mass_matrix(&[0.4]).expect("sound")[(0, 0)]).abs() < 1e-12, "{found}");
 }
 
+/// A robot of one velocity: matrices of one column remain matrices, and all entries may be 0.
+#[test]
+fn single_columns_and_zeros_are_told() {
+    let inertia = ["0", "0.02", "0"];
+    let pendulum =
+        crate::robots::chain("p", &[crate::robots::moved("continuous", "0 1 0", "0 0 0", "2", "0 0 -0.5", inertia)]);
+    let options = options(Symbols::ALL, false);
+    let julia = of(&pendulum, "M", &options).print(Language::Julia);
+    assert!(julia.contains("out_M = reshape([m1*r1^2 + I1_yy], (1, 1))"), "{julia}");
+    let zeros = of(&pendulum, "body_jacobian_derivative", &options);
+    assert_eq!(zeros.print(Language::Text), "all entries of H_b(θ) are 0\n");
+    assert!(zeros.print(Language::Latex).contains(r"H^{b}(\theta) = 0"), "{}", zeros.print(Language::Latex));
+}
+
 #[test]
 fn python_computes_what_the_kernel_computes() {
     let python = std::env::var("MOZZI_PYTHON").unwrap_or_else(|_| "python3".into());

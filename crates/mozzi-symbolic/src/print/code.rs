@@ -177,6 +177,7 @@ fn array(formula: &Formula, printer: &Printer<Code>, language: Language) -> Stri
             format!("permute(reshape([{}], [{}]), [{}])", entries.join(", "), reversed.join(", "), order.join(", "))
         }
         ([_], _) => format!("[{}]", entries.join(", ")),
+        ([rows, 1], _) => format!("reshape([{}], ({rows}, 1))", entries.join(", ")), // [a; b] is a vector
         ([_, columns], _) => {
             format!("[{}]", rows("", " ", "", *columns).join("; ").replace(" + ", "+").replace(" - ", "-"))
         }

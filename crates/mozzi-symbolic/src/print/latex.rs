@@ -217,6 +217,9 @@ fn equation(left: &str, formula: &Formula, name: &str, printer: &Printer<Latex>,
         let index: Vec<String> = formula.index(k).iter().map(usize::to_string).collect();
         lines.push(format!("{name}_{{{}}} &= {}", index.join(","), written[k]));
     }
+    if lines.is_empty() {
+        return format!("{left} = 0");
+    }
     format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
 }
 

@@ -262,7 +262,8 @@ fn entries(formula: &Formula, letter: &str, left: &str, written: &[String]) -> V
         lines.push(format!("{name} = {}", written[k]));
     }
     if zeros > 0 {
-        lines.push(format!("the other entries of {left} are 0"));
+        let which = if lines.is_empty() { "all" } else { "the other" };
+        lines.push(format!("{which} entries of {left} are 0"));
     }
     lines
 }
