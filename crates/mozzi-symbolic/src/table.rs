@@ -220,7 +220,8 @@ impl Table {
         matches!(self.atom(id), Atom::Trig(_) | Atom::Root(_) | Atom::Real { .. })
     }
 
-    /// p / q for a number, a sum of roots, a monomial, or a polynomial of parameters alone; else leaves a [`fault`](Self::fault).
+    /// p / q for a number, a sum of roots, a monomial, or a polynomial of parameters; else leaves a
+    /// [`fault`](Self::fault).
     pub fn over(&mut self, p: &Polynomial, q: &Polynomial) -> Polynomial {
         if let [(monomial, x)] = q.terms() {
             let (special, plain) = monomial.split(|id| self.is_special(id));

@@ -142,7 +142,7 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
         "base_twist" => twist("twist"),
         "base_acceleration" => {
             "6; the rates (dw, dv) of the twist of {s}, in its own coordinates, without gravity: not the acceleration of its \
-             origin, which an IMU there measures, dv + w x v"
+             origin, which is dv + w x v"
                 .to_string()
         }
         _ => {
