@@ -2,8 +2,10 @@
 
 use crate::failure::{Failure, Result};
 use crate::numbers::TWIST;
+use crate::quantity::of_end_effector;
 use clap::{Args, ValueEnum};
-use mozzi::TaskFrame;
+use mozzi::quantities::{Of, Query};
+use mozzi::{Model, Task, TaskFrame};
 
 #[derive(Args, Debug, Default)]
 pub struct TaskArguments {
@@ -27,6 +29,23 @@ impl TaskArguments {
     /// Rows of (ω, v), by index.
     pub fn rows(&self) -> Result<Vec<usize>> {
         self.task.as_ref().map_or_else(|| Ok((0..6).collect()), |rows| rows.split(',').map(row).collect())
+    }
+
+    /// Checks that there is a quantity of a task if these flags are given.
+    pub fn check_use<'q>(&self, mut queries: impl Iterator<Item = Query<'q>>) -> Result<()> {
+        let is_given = self.task.is_some() || self.task_frame.is_some();
+        match is_given && !queries.any(|query| query.declaration().of == Of::Task) {
+            true => Err(Failure::wrong("--task and --task-frame have an effect on task-space-dynamics only")),
+            false => Ok(()),
+        }
+    }
+
+    /// The quantity: of this task, or of the end effector.
+    pub fn subject<'q>(&self, query: Query<'q>, rows: &'q [usize], model: &Model) -> Result<Query<'q>> {
+        match query.declaration().of {
+            Of::Task => Ok(query.of_task(Task { rows, ..Task::all(model.end_effector()?, self.coordinates()) })),
+            _ => of_end_effector(query, model),
+        }
     }
 
     pub fn coordinates(&self) -> TaskFrame {

@@ -55,6 +55,37 @@ fn files_of_each_language() {
     }
 }
 
+/// Tasks have rows, and quantities of constraints need constraints.
+#[test]
+fn what_has_no_program_is_refused() {
+    let out = folder("codegen_refused");
+    let out = out.to_str().expect("a path");
+    for lang in ["c", "casadi"] {
+        let generate = |quantity: &'static str| ["codegen", "two_link_planar", quantity, "--lang", lang, "--out", out];
+        for (quantity, part) in [
+            (
+                "task-space-dynamics",
+                "task-space-dynamics is not generated: the rows wx,wy,wz,vx,vy,vz of J are dependent",
+            ),
+            ("constraint-jacobian", "two_link_planar has no constraints; --constraints FILE adds some"),
+        ] {
+            let (code, said) = complaint(&generate(quantity));
+            assert!(code == 1 && said.contains(part), "{said}");
+        }
+        let (code, said) = complaint(&[&generate("mass-matrix")[..], &["--task", "vx"]].concat());
+        assert!(code == 1 && said.contains("--task and --task-frame have an effect on"), "{said}");
+        text(&[&generate("task-space-dynamics")[..], &["--task", "vx,vz", "--argument", "base-acceleration"]].concat());
+    }
+    let header = std::fs::read_to_string(std::path::Path::new(out).join("two_link_planar.h")).expect("a file");
+    for part in ["Rows: vx, vz of its twist, in the frame's coordinates", "double Lambda[4]"] {
+        assert!(header.contains(part), "{part} in {header}");
+    }
+    let moved = ["codegen", "ur5", "tau", "--argument", "base-acceleration", "--lang", "c", "--out", out];
+    text(&moved);
+    let header = std::fs::read_to_string(std::path::Path::new(out).join("ur5.h")).expect("a file");
+    assert!(header.contains("not the acceleration of its origin, which is dv + w x v"), "{header}");
+}
+
 #[test]
 fn a_program_that_would_be_too_long_is_declined_at_once() {
     let mut urdf = String::from("<robot name='snake'><link name='l0'/>");

@@ -90,10 +90,26 @@ fn what_cannot_be_derived_is_refused_by_name() {
         (&["derive", "two_link_planar", "Lambda"], "such as vx,vz"),
         (&["derive", "two_link_planar", "M", "--task", "vx"], "--task and --task-frame have an effect on"),
         (&["derive", "ur5", "M", "--symbols", "weights"], "found `weights`, expected some of masses"),
+        (&["derive", "ur5", "constraint-jacobian"], "ur5 has no constraints; --constraints FILE adds some"),
         (&["derive", "ur5", "--floating", "--steps"], "a floating base"),
         (&["derive", "two_link_planar", "--steps", "--as", "julia"], "--steps is printed as text, latex or markdown"),
     ] {
         let (code, said) = complaint(arguments);
         assert!(code != 0 && said.contains(part), "{said}");
     }
+}
+
+/// What is derived before a refusal is printed; the reason is the robot's part that is no polynomial.
+#[test]
+fn refusals_tell_their_reason() {
+    let body = "<inertial pos='0 0 -0.2' mass='2' diaginertia='0.1 0.2 0.25'/>";
+    let joint = "<joint name='neck' type='ball' stiffness='1.5'/>";
+    let robot = format!("<mujoco><worldbody><body name='head'>{joint}{body}</body></worldbody></mujoco>");
+    let robot = crate::common::file(&folder("ball"), "ball.xml", &robot);
+    let run = mozzi(&["derive", &robot, "M", "tau", "--symbols", "none"]);
+    let (page, said) = (String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr));
+    assert!(run.status.code() == Some(1) && page.contains("M") && !page.contains("tau"), "{page}");
+    assert!(said.contains("in the spring of the ball joint `neck`") && !said.contains("Derived are"), "{said}");
+    let module = text(&["derive", "two_link_planar", "M", "c", "g", "--as", "sympy"]);
+    assert_eq!(module.matches("\nvalues = {").count(), 1, "{module}");
 }

@@ -195,6 +195,18 @@ impl Graph {
     }
 }
 
+/// Letters of names: the first that is free is taken.
+const LETTERS: [&str; 3] = ["x", "z", "y"];
+
+/// A letter that with a number is none of these names: x₁ may be an entry of a vector x. Without one nothing is named.
+pub(crate) fn free_letter(taken: &[String]) -> Option<&'static str> {
+    let is_numbered = |name: &String, letter: &str| {
+        name.strip_prefix(letter).is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()))
+    };
+    let is_free = |letter: &&&str| !taken.iter().any(|name| is_numbered(name, letter));
+    LETTERS.iter().find(is_free).copied()
+}
+
 /// Names sub-expressions of these formulas; the names in the order in which they are needed.
 pub(crate) fn name(formulas: &mut [Formula]) -> Vec<Expression> {
     let mut graph = Graph::default();

@@ -2,6 +2,7 @@
 
 use crate::atom::{Class, Id};
 use crate::expression::{Expression, Operations};
+use crate::letters::plain_name;
 use crate::parameters::Meaning;
 use crate::rational::Rational;
 use crate::table::Table;
@@ -28,6 +29,8 @@ pub struct Derivation {
     /// Its outputs.
     pub formulas: Vec<Formula>,
     pub(crate) names: Vec<Expression>,
+    /// The letter of the names, which no other name has.
+    pub(crate) letter_of_names: &'static str,
     /// The numbers of the state, by input.
     pub(crate) inputs: Vec<(&'static str, Vec<Id>)>,
     /// Angles that were read as multiples of π, in multiples.
@@ -41,7 +44,22 @@ pub struct Derivation {
     pub(crate) table: Table,
 }
 
+/// The names of symbols, inputs and outputs in code.
+pub(crate) fn plain_names<'a>(
+    table: &Table,
+    inputs: impl Iterator<Item = &'a str>,
+    formulas: &[Formula],
+) -> Vec<String> {
+    let symbols = (0..table.len() as Id).filter_map(|id| table.name(id)).map(plain_name);
+    symbols.chain(inputs.chain(formulas.iter().map(|formula| formula.name)).map(String::from)).collect()
+}
+
 impl Derivation {
+    /// The names of its symbols, inputs and outputs in code.
+    pub(crate) fn plain_names(&self) -> Vec<String> {
+        plain_names(&self.table, self.inputs.iter().map(|(name, _)| *name), &self.formulas)
+    }
+
     /// Different denominators, each with its index in order.
     pub(crate) fn denominators(&self) -> impl Iterator<Item = (usize, &Expression)> {
         let all = self.formulas.iter().filter_map(|formula| formula.denominator.as_ref());

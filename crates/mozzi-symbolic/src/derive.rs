@@ -5,7 +5,7 @@ use crate::atom::Class;
 use crate::collect::Grouping;
 use crate::constrained::{self, Parts};
 use crate::cse;
-use crate::derivation::{Derivation, Formula};
+use crate::derivation::{Derivation, Formula, plain_names};
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL, MOST_LINKS};
 use crate::expression::Expression;
 use crate::fraction::Fraction;
@@ -19,6 +19,7 @@ use crate::rational::Rational;
 use crate::sines::shortened;
 use crate::symbol::{Symbol, end, start, with_table};
 use crate::table::Table;
+use mozzi::model::description::{Joint, JointKind};
 use mozzi::quantities::Query;
 use mozzi::{Description, Model};
 
@@ -70,6 +71,22 @@ pub(crate) fn described(
 /// # Errors
 /// [`Error`] if the kernel leaves the polynomials, or an expression does not equal the kernel.
 pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options) -> Result<Derivation, Error> {
+    derived(model, text, query, options).map_err(|error| match (error, of_a_ball(model)) {
+        (Error::NotPolynomial { quantity, what }, Some(joint)) if what.contains("root") => {
+            let what = format!("{what}, the length of the rotation vector in the spring of the ball joint `{joint}`");
+            Error::NotPolynomial { quantity, what }
+        }
+        (error, _) => error,
+    })
+}
+
+/// A ball joint with a spring, which turns back along the rotation vector of its quaternion.
+fn of_a_ball(model: &Model) -> Option<&str> {
+    let is_sprung = |joint: &&Joint| joint.stiffness != 0.0 && matches!(joint.kind, JointKind::Ball(_));
+    model.joints().find(is_sprung).map(|joint| joint.name.as_str())
+}
+
+fn derived(model: &Model, text: Option<&str>, query: Query, options: &Options) -> Result<Derivation, Error> {
     query.check_subject(model)?;
     let declaration = query.declaration();
     let quantity = declaration.name;
@@ -139,7 +156,9 @@ pub(crate) fn finished(
     (names_of_inputs, inputs): (&[&'static str], &[Vec<Symbol>]),
     prove: impl Fn(&[Formula], &[Expression]) -> Result<(), Error>,
 ) -> Result<Derivation, Error> {
-    let names = if options.names { cse::name(&mut formulas) } else { Vec::new() };
+    let taken = with_table(|table| plain_names(table, names_of_inputs.iter().copied(), &formulas));
+    let letter = cse::free_letter(&taken).filter(|_| options.names);
+    let names = letter.map_or(Vec::new(), |_| cse::name(&mut formulas));
     prove(&formulas, &names)?;
     let id = |x: &Symbol| x.single_atom().unwrap_or_default();
     let ids = names_of_inputs.iter().zip(inputs).map(|(of, all)| (*of, all.iter().map(id).collect())).collect();
@@ -150,6 +169,7 @@ pub(crate) fn finished(
         quantity,
         formulas,
         names,
+        letter_of_names: letter.unwrap_or_default(),
         inputs: ids,
         angles,
         angle_error,

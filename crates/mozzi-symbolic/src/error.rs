@@ -1,6 +1,8 @@
 //! Why there is no derivation.
 
+use crate::inverse::is_fraction;
 use crate::read::NotRead;
+use mozzi::quantities::Query;
 use std::fmt;
 
 /// Longer entries are not derived: a person reads none of them, and grouping takes longer and longer.
@@ -71,13 +73,16 @@ impl fmt::Display for Error {
             Error::NotRead(error) => write!(f, "the file's decimals: {error}"),
             Error::Model(error) => error.fmt(f),
             Error::NotPolynomial { quantity, what } => {
-                let quantity = quantity.replace('_', "-");
-                write!(
-                    f,
-                    "{quantity} {what}: it is no sum of products of sines and parameters. Derived are quantities \
-                     without an inverse, such as mass-matrix, velocity-product, gravity-forces and inverse-dynamics, \
-                     and of those with one mass-matrix-inverse, forward-dynamics, task-space-dynamics and \
-                     constrained-forward-dynamics"
+                let name = quantity.replace('_', "-");
+                write!(f, "{name} {what}: it is no sum of products of sines and parameters")?;
+                let is_divided = Query::named(quantity).is_ok_and(|query| query.declaration().divides);
+                if !is_divided || is_fraction(quantity) {
+                    return Ok(()); // this robot's is not derived, others' are
+                }
+                f.write_str(
+                    ". Derived are quantities without an inverse, such as mass-matrix, velocity-product, \
+                     gravity-forces and inverse-dynamics, and of those with one mass-matrix-inverse, \
+                     forward-dynamics, task-space-dynamics and constrained-forward-dynamics",
                 )
             }
             Error::InverseTooLong { quantity, velocities } => {

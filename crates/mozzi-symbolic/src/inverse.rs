@@ -81,7 +81,7 @@ impl Robot<'_> {
             TaskFrame::Body => (Query::from(BodyJacobian), Query::from(BodyJacobianRate)),
             TaskFrame::Space => (Query::from(SpaceJacobian), Query::from(SpaceJacobianRate)),
         };
-        if let Some(what) = self.dependent_rows(&J.of(frame), subject.rows)? {
+        if let Some(what) = dependent_rows(self.model, query)? {
             return Err(Error::Singular { quantity, what });
         }
         let J = self.output(J.of(frame), &inputs[..1])?;
@@ -97,27 +97,34 @@ impl Robot<'_> {
         let Lambda = solved.fraction(quantity, Lambda, self.are_fractions)?;
         Ok(vec![Lambda, solved.fraction(quantity, eta, self.are_fractions)?])
     }
+}
 
-    /// A sentence if rows of a Jacobian are dependent at every configuration, with rows that are not.
-    fn dependent_rows(&self, J: &Query, rows: &[usize]) -> Result<Option<String>, Error> {
-        const NAMES: [&str; 6] = ["wx", "wy", "wz", "vx", "vy", "vz"];
-        let n = self.model.n();
-        let theta = random_positions(self.model, &mut Random(5));
-        let J = self.model.compute(*J, &[&theta], &self.model.environment())?.swap_remove(0);
-        let independent = |rows: &[usize]| independent(rows, |row| J[row * n..][..n].to_vec());
-        if independent(rows).len() == rows.len() {
-            return Ok(None);
-        }
-        let mut better = independent(&[3, 4, 5, 0, 1, 2]);
-        better.sort_unstable();
-        let list = |rows: &[usize]| rows.iter().map(|&row| NAMES[row]).collect::<Vec<_>>().join(",");
-        Ok(Some(format!(
-            "the rows {} of J are dependent in every configuration, so J M⁻¹Jᵀ has no inverse. Expected are rows that \
-             the robot can move independently, such as {}",
-            list(rows),
-            list(&better)
-        )))
+/// A sentence if the rows of a task's Jacobian are dependent in every configuration, with rows that are not.
+///
+/// # Errors
+/// [`mozzi::Error`] if the frame belongs to another model.
+pub fn dependent_rows(model: &Model, query: &Query) -> Result<Option<String>, mozzi::Error> {
+    const NAMES: [&str; 6] = ["wx", "wy", "wz", "vx", "vy", "vz"];
+    let (Some(frame), rows) = (query.subject.frame, query.subject.rows) else { return Ok(None) };
+    let J = match query.subject.coordinates {
+        TaskFrame::Body => Query::from(BodyJacobian),
+        TaskFrame::Space => Query::from(SpaceJacobian),
+    };
+    let (n, theta) = (model.n(), random_positions(model, &mut Random(5)));
+    let J = model.compute(J.of(frame), &[&theta], &model.environment())?.swap_remove(0);
+    let independent = |rows: &[usize]| independent(rows, |row| J[row * n..][..n].to_vec());
+    if independent(rows).len() == rows.len() {
+        return Ok(None);
     }
+    let mut better = independent(&[3, 4, 5, 0, 1, 2]);
+    better.sort_unstable();
+    let list = |rows: &[usize]| rows.iter().map(|&row| NAMES[row]).collect::<Vec<_>>().join(",");
+    Ok(Some(format!(
+        "the rows {} of J are dependent in every configuration, so J M⁻¹Jᵀ has no inverse. Expected are rows that \
+         the robot can move independently, such as {}",
+        list(rows),
+        list(&better)
+    )))
 }
 
 /// Those of these rows that do not depend on the ones before.

@@ -26,6 +26,16 @@ pub(crate) fn plain_name(name: &Name) -> String {
     format!("{dots}{letter}{number}{part}")
 }
 
+/// A file's name as a part of a line: without line breaks and other characters that are not printed, which would end a
+/// comment or turn the text's direction.
+pub(crate) fn printable(name: &str) -> String {
+    let is_unseen = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
+    };
+    name.chars().map(|c| if is_unseen(c) { '_' } else { c }).collect()
+}
+
 /// Digits below the line.
 pub(crate) fn below(n: usize) -> String {
     n.to_string().bytes().map(|digit| SUBSCRIPTS[usize::from(digit - b'0')]).collect()

@@ -1,9 +1,10 @@
 //! The robot's numbers as symbols with the book's names, or as exact numbers.
 
 use crate::atom::{Atom, Class, Id, Name};
-use crate::letters::plain_name;
+use crate::letters::{plain_name, printable};
 use crate::rational::Rational;
 use crate::read::{At, NotRead, Part, agree, read_urdf};
+use crate::rotation::{exact, exact_axis};
 use crate::symbol::{Symbol, with_table};
 use mozzi::model::description::JointKind;
 use mozzi::{Description, Model, SE3, SO3, SpatialInertia, Vec3};
@@ -163,19 +164,24 @@ impl Parameters {
     pub fn describe(&mut self, robot: &Description, text: Option<&str>) -> Result<Description<Symbol>, NotRead> {
         match text {
             Some(text) => {
-                let read = read_urdf(text, robot, is_short, nearest_decimal, |at, text| self.number(at, text))?;
+                let mut read = read_urdf(text, robot, is_short, nearest_decimal, |at, text| self.number(at, text))?;
                 // what 1.5708 stands for is not its number
                 agree(&read, robot, 1e-6 + 3.0 * self.angle_error)?;
+                with_exact_axes(&mut read, robot, |axis| !is_short(axis));
                 Ok(read)
             }
             None => self.of_numbers(robot),
         }
     }
 
-    /// Without decimals of a file: each number's shortest decimals. Rounding errors of rotations are removed near 0 and
-    /// ±1, those of centres of mass in the 15th digit.
+    /// Without decimals of a file: each number's shortest decimals, but rotations that are exact. Rounding errors of
+    /// centres of mass are removed in the 15th digit.
     fn of_numbers(&mut self, robot: &Description) -> Result<Description<Symbol>, NotRead> {
         let mut read = robot.map(nearest_decimal);
+        with_exact_axes(&mut read, robot, |_| true);
+        for (new, frame) in read.frames.iter_mut().zip(&robot.frames) {
+            new.T.R = exact(frame.T.R);
+        }
         let mut number = |name: &str, part: Part, x: f64| {
             let text = format!("{}", fifteen_digits(x));
             self.number(At { name, part }, &text).ok_or_else(|| NotRead(format!("{name}: the number {x}")))
@@ -185,6 +191,7 @@ impl Parameters {
         }
         for (new, joint) in read.joints.iter_mut().zip(&robot.joints) {
             let name = joint.name.as_str();
+            new.origin.R = exact(joint.origin.R);
             for k in 0..3 {
                 new.origin.p.0[k] = number(name, Part::Origin(k), joint.origin.p.0[k])?;
             }
@@ -266,7 +273,7 @@ impl Parameters {
 
     fn symbol(&mut self, at: At, name: Name, class: Class, value: Rational, unit: &'static str) -> Symbol {
         let (size, is_negative) = (value.abs(), value.is_negative());
-        let place = format!("{} {}", at.name, describe(at.part));
+        let place = format!("{} {}", printable(at.name), describe(at.part));
         let is_equal = |known: &&mut Meaning| {
             let is_near = match self.equal {
                 Equal::Separate => known.places.contains(&place), // one number of two readings
@@ -346,8 +353,19 @@ fn nearest_decimal(x: f64) -> Symbol {
     Rational::decimal(&format!("{near}")).unwrap_or(Rational::ZERO).into()
 }
 
+/// Axes of these directions by numbers of length 1.
+fn with_exact_axes(read: &mut Description<Symbol>, robot: &Description, is_such: impl Fn([f64; 3]) -> bool) {
+    for (new, joint) in read.joints.iter_mut().zip(&robot.joints) {
+        let JointKind::Screw(A) = joint.kind else { continue };
+        let direction = if A.is_prismatic() { A.twist().v } else { A.twist().w };
+        if let Some(axis) = exact_axis(A).filter(|_| is_such(direction.0)) {
+            new.kind = JointKind::Screw(axis);
+        }
+    }
+}
+
 /// Whether an axis is in the direction of small integers, so that its norm has a short root.
-fn is_short(axis: [f64; 3]) -> bool {
+pub(crate) fn is_short(axis: [f64; 3]) -> bool {
     let least = axis.iter().map(|x| x.abs()).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
     let is_integer = |x: f64| (x - x.round()).abs() < 1e-9;
     (1..=100).any(|k| axis.iter().all(|x| is_integer(x / least * f64::from(k))))

@@ -10,6 +10,7 @@ use crate::kernel::{Kernel, check_fault};
 use crate::point::Point;
 use crate::polynomial::Polynomial;
 use crate::rational::Rational;
+use crate::rounded::Rounded;
 use crate::symbol::{Symbol, recount, set_point, with_table};
 use mozzi::quantities::Query;
 use mozzi::random::Random;
@@ -143,6 +144,9 @@ impl Derivation {
     }
 }
 
+/// How many bounds of a formula's rounding error it and the kernel may be apart.
+pub(crate) const OF_BOUND: f64 = 16.0;
+
 /// Compares a derivation with the model's own kernel in `f64`.
 pub(crate) fn compare(
     derivation: &Derivation,
@@ -167,16 +171,20 @@ pub(crate) fn compare(
     let environment = Environment { applied: &applied, ..model.environment() };
     let expected = model.compute(*query, &slices, &environment)?;
     let wrench = tip.map(|_| &F[..]);
-    let slices: Vec<&[f64]> = slices.into_iter().chain(wrench).collect();
-    let found = derivation.evaluate(&slices, Rational::to_f64, std::f64::consts::PI);
+    let rounded = |slice: &[f64]| slice.iter().copied().map(Rounded::from).collect::<Vec<_>>();
+    let inputs: Vec<Vec<Rounded>> = slices.into_iter().chain(wrench).map(rounded).collect();
+    let slices: Vec<&[Rounded]> = inputs.iter().map(Vec::as_slice).collect();
+    let found = derivation.evaluate(&slices, |x| x.to_f64().into(), std::f64::consts::PI.into());
     // angles that were read as multiples of π change what depends on them
     let snapped = derivation.angle_error;
     let noise = 1e-13 * model.mass().abs().max(1.0) * 100.0;
     for (found, expected) in found.iter().zip(&expected) {
         let size = expected.iter().fold(1e-300_f64, |size, x| size.max(x.abs()));
         for (entry, (found, expected)) in found.iter().zip(expected).enumerate() {
-            if !((found - expected).abs() <= (1e-9 + 1e3 * snapped) * size + noise) {
-                let what = format!("{found} instead of {expected}");
+            // terms that cancel, and a small denominator, enlarge the rounding errors of both
+            let rounding = OF_BOUND * found.error;
+            if !((found.value - expected).abs() <= (1e-9 + 1e3 * snapped) * size + noise + rounding) {
+                let what = format!("{} instead of {expected}", found.value);
                 return Err(Error::NotProven { quantity: derivation.quantity, entry, what });
             }
         }
@@ -193,4 +201,29 @@ pub(crate) fn random_positions(model: &Model, random: &mut Random) -> Vec<f64> {
         quaternion.iter_mut().for_each(|x| *x /= size);
     }
     theta
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::derive::{Options, derive};
+
+    /// A formula that is wrong by a millionth of one entry is refused, a difference in rounding is not.
+    #[test]
+    fn wrong_formulas_are_refused() {
+        let text = mozzi_urdf::embedded::text("two_link_planar").expect("embedded");
+        let model = mozzi_urdf::parse("robot.urdf", text).expect("sound").description.build().expect("sound");
+        for name in ["mass_matrix", "forward_dynamics", "inverse_dynamics_vjp"] {
+            let query = Query::named(name).expect(name);
+            let found = derive(&model, Some(text), query, &Options::default()).expect(name);
+            for (part, is_wrong) in
+                [(Rational::new(1, 1_000_000), true), (Rational::new(1, 1_000_000_000_000_000), false)]
+            {
+                let mut other = found.clone();
+                let entry = &mut other.formulas[0].entries[0];
+                *entry = Expression::product(&Rational::ONE + &part, vec![entry.clone()]);
+                assert_eq!(compare(&other, &query, &model, None).is_err(), is_wrong, "{name}");
+            }
+        }
+    }
 }

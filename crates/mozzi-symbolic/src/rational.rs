@@ -42,7 +42,8 @@ impl Rational {
         }
     }
 
-    fn of_big(a: BigInt, b: BigInt) -> Self {
+    /// a / b, for b ≠ 0.
+    pub(crate) fn of_big(a: BigInt, b: BigInt) -> Self {
         let divisor = a.gcd(&b);
         let (mut a, mut b) = if divisor.is_one() { (a, b) } else { (a / &divisor, b / &divisor) };
         if b.is_negative() {

@@ -7,7 +7,7 @@ use crate::derive::{Collect, Options, described, legend_of, written};
 use crate::error::Error;
 use crate::expression::Expression;
 use crate::kernel::{Kernel, check_fault};
-use crate::letters::below;
+use crate::letters::{below, printable};
 use crate::parameters::Meaning;
 use crate::symbol::{Symbol, end, with_table};
 use crate::table::Table;
@@ -168,7 +168,7 @@ pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Ste
     for (i, link) in (1..).zip(&links) {
         let (p, at) = (link.parent, below(i));
         let of_parent = format!("{at},{}", below(p));
-        writer.title = Some(format!("outward, link {i}: {}", link.name));
+        writer.title = Some(format!("outward, link {i}: {}", printable(&link.name)));
         let matrix = link.T.to_matrix().concat();
         writer.add(format!("T{of_parent}"), format!("T_{{{i},{p}}}"), vec![4, 4], matrix);
         writer.six(format!("𝒜{at}"), format!(r"\mathcal A_{{{i}}}"), link.A.to_array());
@@ -186,7 +186,7 @@ pub fn steps(model: &Model, text: Option<&str>, options: &Options) -> Result<Ste
     for (k, link) in links.iter().enumerate().rev() {
         let i = k + 1;
         let at = below(i);
-        writer.title = Some(format!("inward, link {i}: {}", link.name));
+        writer.title = Some(format!("inward, link {i}: {}", printable(&link.name)));
         let G = link.G.to_matrix().concat();
         writer.add(format!("𝒢{at}"), format!(r"\mathcal G_{{{i}}}"), vec![6, 6], G);
         F[i] = F[i] + link.G * dV[i] - V[i].ad().transpose() * (link.G * V[i]);

@@ -3,6 +3,7 @@
 use crate::atom::{Angle, Atom, Class, Id, Name, Trig};
 use crate::polynomial::{Monomial, Polynomial, Sum};
 use crate::rational::Rational;
+use num_bigint::BigInt;
 use std::collections::HashMap;
 
 /// A group of angles of parallel axes.
@@ -49,6 +50,9 @@ pub(crate) enum Fault {
     /// So many terms, and the most that there may be.
     TooLong([usize; 2]),
 }
+
+/// The different primes of roots in a number by which is divided.
+const MOST_PRIMES: usize = 16;
 
 /// A product of more terms is not computed.
 const MOST: usize = 500_000;
@@ -216,7 +220,8 @@ impl Table {
         matches!(self.atom(id), Atom::Trig(_) | Atom::Root(_) | Atom::Real { .. })
     }
 
-    /// p / q for a number, a monomial, or a polynomial of parameters alone; else leaves a [`fault`](Self::fault).
+    /// p / q for a number, a sum of roots, a monomial, or a polynomial of parameters; else leaves a
+    /// [`fault`](Self::fault).
     pub fn over(&mut self, p: &Polynomial, q: &Polynomial) -> Polynomial {
         if let [(monomial, x)] = q.terms() {
             let (special, plain) = monomial.split(|id| self.is_special(id));
@@ -228,6 +233,9 @@ impl Table {
             }
             return self.times(p, &inverse);
         }
+        if q.terms().iter().all(|(monomial, _)| monomial.factors().all(|(id, _)| self.root_of(id).is_some())) {
+            return self.over_roots(p, q);
+        }
         let is_parameter = |(id, _): (Id, i32)| matches!(self.atom(id), Atom::Parameter { .. });
         if q.is_zero() || !q.terms().iter().all(|(monomial, _)| monomial.factors().all(is_parameter)) {
             return self.fail(q);
@@ -237,6 +245,34 @@ impl Table {
         let atom = Atom::Inverse(q.scaled(&first.inverse()));
         let inverse = Polynomial::atom(self.id(atom)).scaled(&first.inverse());
         self.times(p, &inverse)
+    }
+
+    fn root_of(&self, id: Id) -> Option<u64> {
+        match *self.atom(id) {
+            Atom::Root(n) => Some(n),
+            _ => None,
+        }
+    }
+
+    /// p over a sum of roots: 1/(a + b√n) = (a − b√n)/(a² − b²n), for one prime of the roots after the other.
+    fn over_roots(&mut self, p: &Polynomial, q: &Polynomial) -> Polynomial {
+        let (mut above, mut below) = (p.clone(), q.clone());
+        for _ in 0..MOST_PRIMES {
+            if let Some(x) = below.number().filter(|x| !x.is_zero()) {
+                return above.scaled(&x.inverse());
+            }
+            let roots = |monomial: &Monomial| monomial.factors().find_map(|(id, _)| self.root_of(id));
+            let Some(first) = below.terms().iter().find_map(|(monomial, _)| roots(monomial)) else { break };
+            let prime = (2..1 << 20).find(|prime| first % prime == 0).unwrap_or(first);
+            let is_turned = |monomial: &Monomial| roots(monomial).is_some_and(|n| n % prime == 0);
+            let sign = |(monomial, x): &(Monomial, Rational)| match is_turned(monomial) {
+                true => (monomial.clone(), -x),
+                false => (monomial.clone(), x.clone()),
+            };
+            let conjugate = Polynomial(below.terms().iter().map(sign).collect());
+            (above, below) = (self.times(&above, &conjugate), self.times(&below, &conjugate));
+        }
+        self.fail(q)
     }
 
     fn fail(&mut self, q: &Polynomial) -> Polynomial {
@@ -258,7 +294,7 @@ impl Table {
 
     /// √x as an integer's root times a fraction.
     fn short_root(&mut self, x: &Rational) -> Option<Polynomial> {
-        let Rational::Small(a, b) = *x else { return None };
+        let Rational::Small(a, b) = *x else { return large_square_root(x).map(Polynomial::constant) };
         if a <= 0 {
             return (a == 0).then(Polynomial::default);
         }
@@ -283,6 +319,13 @@ impl Table {
     }
 }
 
+/// The root of the square of a fraction of any size.
+fn large_square_root(x: &Rational) -> Option<Rational> {
+    let (a, b) = x.parts();
+    let root = |n: &BigInt| Some(n.sqrt()).filter(|root| root * root == *n);
+    if x.is_negative() { None } else { Some(Rational::of_big(root(&a)?, root(&b)?)) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -294,5 +337,15 @@ mod tests {
         let (two, six, three) = (root(2), root(6), root(3));
         assert_eq!(table.times(&two, &two), Polynomial::constant(Rational::new(2, 1)));
         assert_eq!(table.times(&two, &six), three.scaled(&Rational::new(2, 1)));
+    }
+
+    #[test]
+    fn numbers_are_divided_by_sums_of_roots() {
+        let mut table = Table::default();
+        let mut root = |x: i64| table.root(&Rational::new(x, 1)).expect("a root");
+        let one = Polynomial::constant(Rational::ONE);
+        let sum = root(2).plus(&root(6)).plus(&root(10038)).plus(&one);
+        let inverse = table.over(&one, &sum);
+        assert_eq!((table.times(&inverse, &sum), table.fault.is_none()), (one, true));
     }
 }

@@ -6,6 +6,7 @@ mod bounds;
 mod canonical;
 mod inverse;
 mod lagrange;
+mod numbers;
 mod printed;
 mod published;
 mod robots;

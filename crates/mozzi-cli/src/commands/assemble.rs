@@ -6,6 +6,7 @@ use crate::state::{StartArguments, pasted};
 use crate::text::{Page, about, column, rows_of, table};
 use crate::{angles, failure, json};
 use clap::Args;
+use mozzi::quantities::Query;
 use mozzi::{ConstraintRank, Model};
 use serde_json::{Value, json};
 
@@ -71,6 +72,14 @@ pub fn needs_constraints(model: &Model) -> Result<()> {
             Err(Failure::wrong(format!("{robot} has no constraints; --constraints FILE adds some")))
         }
         _ => Ok(()),
+    }
+}
+
+/// Checks that the model has constraints if these quantities are those of constraints.
+pub fn check_constraints<'q>(queries: impl IntoIterator<Item = Query<'q>>, model: &Model) -> Result<()> {
+    match queries.into_iter().any(|query| query.declaration().is_constrained) {
+        true => needs_constraints(model),
+        false => Ok(()),
     }
 }
 

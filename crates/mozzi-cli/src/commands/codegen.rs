@@ -1,21 +1,24 @@
 //! `mozzi codegen`: a robot's quantities as source text, and their operation counts after folding.
 
+use super::assemble::check_constraints;
 use super::info;
 use crate::failure::{Failure, Result};
 use crate::json;
-use crate::quantity::{hyphenated, is_of_a_frame, of_end_effector, quantity};
+use crate::quantity::{hyphenated, is_of_a_frame, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use crate::state::check_frames;
+use crate::task::TaskArguments;
 use crate::text::{Page, table};
 use crate::workload::count;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::Model;
-use mozzi::quantities::{LIST, Query};
+use mozzi::quantities::{LIST, Of, Query};
 use mozzi_engine::{
     Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Number, Precision, Refusal, Shape, SourceFile, emit,
     emit_casadi, estimate, record_quantity,
 };
+use mozzi_symbolic::dependent_rows;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -23,6 +26,8 @@ use std::path::{Path, PathBuf};
 pub struct CodegenArguments {
     #[command(flatten)]
     robot: RobotArguments,
+    #[command(flatten)]
+    task: TaskArguments,
     /// The quantities to generate: M c g tau J_b … [default with --explain: all]
     #[arg(value_name = "QUANTITY", value_parser = quantity(), required_unless_present_any = ["explain", "named"])]
     quantity: Vec<Query<'static>>,
@@ -39,7 +44,8 @@ pub struct CodegenArguments {
     #[arg(long, value_name = "DIR", requires = "lang")]
     out: Option<PathBuf>,
     /// Keep this as a function argument instead of a constant: parameters (masses, inertias, frictions, springs),
-    /// gravity, base-twist, base-acceleration, about (reference point of a momentum), wrench (applied by the end
+    /// gravity, base-twist, base-acceleration (the rates of that twist, not the acceleration of the base's origin), about
+    /// (reference point of a momentum), wrench (applied by the end
     /// effector) or wrench=FRAME; may be repeated
     #[arg(long, value_name = "WHAT", value_parser = argument)]
     argument: Vec<Argument>,
@@ -131,11 +137,19 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
         derivative: if arguments.jvp { Derivative::RATES } else { Derivative::None },
     };
     let mut queries = [arguments.quantity.as_slice(), &arguments.named].concat();
+    let is_named = !queries.is_empty();
+    check_constraints(queries.iter().copied(), &model)?;
+    arguments.task.check_use(queries.iter().copied())?;
     if queries.is_empty() {
         let has_end = end_effector(&model).is_some();
         queries = (0..LIST.len()).map(Query::at).filter(|query| has_end || !is_of_a_frame(*query)).collect();
     }
-    let queries = queries.into_iter().map(|query| of_end_effector(query, &model)).collect::<Result<Vec<Query>>>()?;
+    let rows = arguments.task.rows()?;
+    let subject = |query| arguments.task.subject(query, &rows, &model);
+    let queries = queries.into_iter().map(subject).collect::<Result<Vec<Query>>>()?;
+    if is_named {
+        queries.iter().try_for_each(|query| check_task(&model, query))?;
+    }
     if !arguments.allow_large {
         queries.iter().try_for_each(|&query| check_length(&model, query))?;
     }
@@ -170,6 +184,17 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
         explain(&mut page, &model, &works);
     }
     Ok(page.end())
+}
+
+/// Checks that the rows of a task are independent somewhere: else its program divides by 0.
+fn check_task(model: &Model, query: &Query) -> Result<()> {
+    let dependent = if query.declaration().of == Of::Task { dependent_rows(model, query)? } else { None };
+    match dependent {
+        Some(why) => {
+            Err(Failure::wrong(format!("{} is not generated: {why}; --task names them", hyphenated(query.name()))))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Recording a long program, and compiling its text, takes minutes and gigabytes.

@@ -1,17 +1,19 @@
 //! `mozzi derive`: a robot's equations in symbols.
 
+use super::assemble::check_constraints;
 use crate::failure::{self, Failure, Result};
 use crate::json;
-use crate::quantity::{hyphenated, of_end_effector, quantity};
+use crate::quantity::{hyphenated, quantity};
 use crate::robot::RobotArguments;
 use crate::task::TaskArguments;
 use crate::text::table;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use mozzi::quantities::{LIST, Of, Query};
-use mozzi::{Model, Task};
+use mozzi::Model;
+use mozzi::quantities::{LIST, Query};
 use mozzi_symbolic::{
-    Collect, Derivation, Equal, Error, Language, Options, Symbols, base_parameters, derive, is_fraction, steps,
+    Collect, Derivation, Equal, Error, Language, Options, Symbols, base_parameters, derive, is_fraction, print_all,
+    steps,
 };
 use serde_json::{Value, json};
 use std::ffi::OsStr;
@@ -54,6 +56,15 @@ pub struct DeriveArguments {
 enum Wanted {
     Quantity(Query<'static>),
     BaseParameters,
+}
+
+impl Wanted {
+    fn query(&self) -> Option<Query<'static>> {
+        match self {
+            Wanted::Quantity(query) => Some(*query),
+            Wanted::BaseParameters => None,
+        }
+    }
 }
 
 const BASE_PARAMETERS: (&str, &str) =
@@ -164,32 +175,40 @@ pub fn run(arguments: &DeriveArguments) -> Result<String> {
         let named = |name| Query::named(name).map(Wanted::Quantity);
         queries = ["M", "c", "g"].into_iter().map(named).collect::<Result<Vec<Wanted>, mozzi::Error>>()?;
     }
-    let is_of_task = |wanted: &Wanted| matches!(wanted, Wanted::Quantity(query) if query.declaration().of == Of::Task);
-    if (arguments.task.task.is_some() || arguments.task.task_frame.is_some()) && !queries.iter().any(is_of_task) {
-        return Err(Failure::wrong("--task and --task-frame have an effect on task-space-dynamics only".to_string()));
-    }
+    let quantities = || queries.iter().filter_map(Wanted::query);
+    arguments.task.check_use(quantities())?;
+    check_constraints(quantities(), &model)?;
     let rows = arguments.task.rows()?;
     let mut text = arguments.robot.urdf_text();
     let mut derivations = Vec::new();
+    let mut refused = None;
     for wanted in queries {
-        let query = match wanted {
-            Wanted::Quantity(query) if is_of_task(&wanted) => {
-                let task = Task::all(model.end_effector()?, arguments.task.coordinates());
-                Some(query.of_task(Task { rows: &rows, ..task }))
-            }
-            Wanted::Quantity(query) => Some(of_end_effector(query, &model)?),
-            Wanted::BaseParameters => None,
-        };
-        derivations.push(by_decimals(&mut text, |text| match query {
+        let query = wanted.query().map(|query| arguments.task.subject(query, &rows, &model)).transpose()?;
+        let found = by_decimals(&mut text, |text| match query {
             Some(query) => derive(&model, text, query, &options),
             None => base_parameters(&model, text, &options),
-        })?);
+        });
+        match found {
+            Ok(derivation) => derivations.push(derivation),
+            Err(failure) if derivations.is_empty() => return Err(failure),
+            Err(failure) => {
+                refused = Some(failure);
+                break;
+            }
+        }
     }
-    if arguments.robot.json {
-        return Ok(object(&model, &derivations));
+    let page = match arguments.robot.json {
+        true => object(&model, &derivations),
+        false => print_all(&derivations, arguments.language),
+    };
+    // what is derived is printed, then why the next is not
+    match refused {
+        Some(failure) => {
+            failure.say();
+            Err(Failure::Answered(page))
+        }
+        None => Ok(page),
     }
-    let pages: Vec<String> = derivations.iter().map(|derivation| derivation.print(arguments.language)).collect();
-    Ok(pages.join("\n"))
 }
 
 /// By the file's decimals, else by the shortest decimals of the robot's numbers, with a note.

@@ -4,8 +4,8 @@ use super::Precision;
 use super::names::in_comment;
 use crate::program::{Arguments, Derivative, Program};
 use mozzi::Freedom;
-use mozzi::quantities::Query;
-use mozzi::{FrameId, Model};
+use mozzi::quantities::{Of, Query};
+use mozzi::{FrameId, Model, TaskFrame};
 
 /// The header comment of a text.
 pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -> Vec<String> {
@@ -86,11 +86,24 @@ fn frame_name(model: &Model, frame: FrameId) -> String {
 /// The formula of a quantity, and the cost of the recursive algorithm.
 pub(super) fn quantity(model: &Model, query: Query, program: &Program) -> Vec<String> {
     let frame = query.subject.frame.map(|frame| format!(" Frame: `{}`.", frame_name(model, frame)));
-    let words = format!("{}.{}", ascii(query.declaration().formula), frame.unwrap_or_default());
+    let words = format!("{}.{}{}", ascii(query.declaration().formula), frame.unwrap_or_default(), rows(query));
     let before = program
         .count_before_folding()
         .map(|count| format!("The recursive algorithm takes {} flops; of these remain:", count.flops()));
     [words].into_iter().chain(before).collect()
+}
+
+/// The rows of a task.
+fn rows(query: Query) -> String {
+    if query.declaration().of != Of::Task {
+        return String::new();
+    }
+    let names: Vec<&str> = query.subject.rows.iter().map(|&row| ["wx", "wy", "wz", "vx", "vy", "vz"][row]).collect();
+    let coordinates = match query.subject.coordinates {
+        TaskFrame::Body => "the frame's coordinates",
+        TaskFrame::Space => "{s}",
+    };
+    format!(" Rows: {} of its twist, in {coordinates}.", names.join(", "))
 }
 
 /// Shape, meaning and unit of an array.
@@ -127,7 +140,11 @@ pub(super) fn array(model: &Model, query: Query, arguments: Arguments, name: &st
         "gravity" => "3; in {s}, m/s^2".to_string(),
         "about" => "3; a point in {s}, m".to_string(),
         "base_twist" => twist("twist"),
-        "base_acceleration" => twist("acceleration"),
+        "base_acceleration" => {
+            "6; the rates (dw, dv) of the twist of {s}, in its own coordinates, without gravity: not the acceleration of its \
+             origin, which is dv + w x v"
+                .to_string()
+        }
         _ => {
             let of_name = |frame: &&FrameId| arguments.wrench_name(model, **frame) == name;
             let frame = arguments.wrenches.iter().find(of_name).map(|&frame| frame_name(model, frame));

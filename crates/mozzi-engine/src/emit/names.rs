@@ -11,11 +11,17 @@ const KEPT: &str = " abstract alignas alignof and asm assert auto aux become boo
     square_root state static std struct super switch template this throw trait true try type typedef typeid typename typeof u32 u64 \
     union unsafe unsigned unsized use using virtual void volatile where while xor yield ";
 
+/// Headers of C's library and of its usual neighbours: a robot's `math.h` would be found instead of <math.h>.
+const HEADERS: &str = " alloca complex ctype cuda cuda_runtime errno fenv inttypes iso646 limits locale malloc math memory setjmp signal \
+    stdalign stdarg stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string strings tgmath threads time \
+    uchar unistd wchar wctype ";
+
 /// A name of ASCII letters, digits and single underscores that begins with a letter; `nothing` if no character is left.
 pub(super) fn identifier(name: &str, nothing: &str) -> String {
     let words: Vec<&str> = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
     let joined = words.join("_");
-    let is_kept = KEPT.contains(&format!(" {} ", joined.to_ascii_lowercase()));
+    let word = format!(" {} ", joined.to_ascii_lowercase());
+    let is_kept = KEPT.contains(&word) || HEADERS.contains(&word);
     match joined.chars().next() {
         None => nothing.to_string(),
         Some(first) if first.is_ascii_digit() => format!("{nothing}_{joined}"),
@@ -59,6 +65,8 @@ mod tests {
             ("ロボット", "robot"),
             ("", "robot"),
             ("match", "match_"),
+            ("math", "math_"),
+            ("Time", "Time_"),
             ("Class", "Class_"),
             ("a/../b\n", "a_b"),
             ("nul", "nul_"),

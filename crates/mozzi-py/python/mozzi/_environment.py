@@ -19,7 +19,7 @@ class Environment:
     base_twist : array_like, shape (6,), optional
         Twist (ω, v) of {s}: rad/s, m/s.
     base_acceleration : array_like, shape (6,), optional
-        Acceleration (ω̇, v̇) of {s}: rad/s², m/s².
+        Rates (ω̇, v̇) of the twist of {s}: rad/s², m/s². The acceleration of its origin is v̇ + ω × v.
     tip_wrench : array_like, shape (..., 6), optional
         Wrench (m, f) that the end effector applies to the environment, in its own coordinates: N m, N.
     applied_wrenches : dict of str to array_like of shape (..., 6), optional

@@ -23,9 +23,6 @@ impl Style for Code {
     fn name(&self, name: &Name) -> String {
         plain_name(name)
     }
-    fn named(&self, k: usize) -> String {
-        format!("x{}", k + 1)
-    }
     fn sine(&self, is_cosine: bool, angle: &str, _: bool, power: i32) -> String {
         let function = if is_cosine { "cos" } else { "sin" };
         let one = format!("{function}({angle})");
@@ -57,7 +54,7 @@ impl Style for Code {
 
 pub(crate) fn function(derivation: &Derivation, language: Language) -> String {
     let style = Code { language };
-    let printer = Printer { style: &style, table: &derivation.table };
+    let printer = Printer::of(derivation, &style);
     let (name, inputs) = (derivation.quantity, derivation.inputs.iter().map(|(name, _)| *name).collect::<Vec<_>>());
     let parameters: Vec<(String, String, &Meaning)> = derivation
         .legend
@@ -77,7 +74,7 @@ pub(crate) fn function(derivation: &Derivation, language: Language) -> String {
         }
     }
     for (k, expression) in derivation.names.iter().enumerate() {
-        body.push(format!("{} = {}", style.named(k), printer.expression(expression)));
+        body.push(format!("{} = {}", printer.named(k), printer.expression(expression)));
     }
     let results: Vec<&str> = derivation.formulas.iter().map(|formula| formula.name).collect();
     let outputs: Vec<String> = results.iter().map(|name| format!("out_{name}")).collect();
@@ -180,6 +177,7 @@ fn array(formula: &Formula, printer: &Printer<Code>, language: Language) -> Stri
             format!("permute(reshape([{}], [{}]), [{}])", entries.join(", "), reversed.join(", "), order.join(", "))
         }
         ([_], _) => format!("[{}]", entries.join(", ")),
+        ([rows, 1], _) => format!("reshape([{}], ({rows}, 1))", entries.join(", ")), // [a; b] is a vector
         ([_, columns], _) => {
             format!("[{}]", rows("", " ", "", *columns).join("; ").replace(" + ", "+").replace(" - ", "-"))
         }

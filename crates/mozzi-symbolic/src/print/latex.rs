@@ -1,10 +1,11 @@
 //! LaTeX with amsmath.
 
 use super::legend::angles;
-use super::{Letter, Printer, Style};
+use super::{Letter, Printer, Style, approximate};
 use crate::atom::Name;
 use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
+use crate::letters::printable;
 use crate::parameters::Meaning;
 use crate::rational::Rational;
 use crate::steps::Steps;
@@ -37,15 +38,21 @@ fn dotted(text: &str, dots: u8) -> String {
     }
 }
 
+/// True for x, zz, ωx, and for links of so short names.
+fn is_axis(part: &str) -> bool {
+    part.chars().count() <= 2 && part.chars().all(|c| c.is_ascii_alphanumeric() || c == 'ω' || c == '\'')
+}
+
 /// The text of a link's name.
 fn escaped(text: &str) -> String {
     let each = |c: char| match c {
         '_' | '%' | '$' | '#' | '&' | '{' | '}' => format!(r"\{c}"),
         '\\' => r"\backslash ".into(),
-        '^' | '~' => format!(r"\{c}{{}}"),
+        '^' => r"\wedge ".into(), // accents of text are none of formulas
+        '~' => r"\sim ".into(),
         c => c.to_string(),
     };
-    text.chars().map(each).collect()
+    printable(text).chars().map(each).collect()
 }
 
 impl Style for Latex {
@@ -53,13 +60,16 @@ impl Style for Latex {
         let (a, b) = x.parts();
         match x.to_decimal() {
             Some(text) if x.integer().is_some() || ![2, 4, 8].contains(&b.to_u64().unwrap_or(0)) => text,
-            _ => format!(r"\tfrac{{{a}}}{{{b}}}"),
+            _ => match approximate(x) {
+                Some(text) => text.replace('…', r"\ldots "),
+                None => format!(r"\tfrac{{{a}}}{{{b}}}"),
+            },
         }
     }
     fn name(&self, name: &Name) -> String {
         let part = match &name.part[..] {
-            part if part.len() > 2 => format!(r"\mathrm{{{}}}", escaped(part)),
-            part => part.replace('ω', r"\omega "),
+            part if is_axis(part) => part.replace('ω', r"\omega "),
+            part => format!(r"\mathrm{{{}}}", escaped(part)),
         };
         let number = name.number.map(|n| n.to_string());
         let below: Vec<String> = number.into_iter().chain([part]).filter(|part| !part.is_empty()).collect();
@@ -67,9 +77,6 @@ impl Style for Latex {
             true => dotted(name.letter, name.dots),
             false => format!("{}_{{{}}}", dotted(name.letter, name.dots), below.join(",")),
         }
-    }
-    fn named(&self, k: usize) -> String {
-        format!("x_{{{}}}", k + 1)
     }
     fn sine(&self, is_cosine: bool, angle: &str, is_single: bool, power: i32) -> String {
         let function = if is_cosine { r"\cos" } else { r"\sin" };
@@ -128,7 +135,8 @@ fn symbols(legend: &[Meaning]) -> String {
         page.push_str("| symbol | in the file | unit | where |\n|---|---|---|---|\n");
     }
     for meaning in legend {
-        let (name, places) = (Latex.name(&meaning.name), meaning.places.join("; "));
+        let name = Latex.name(&meaning.name);
+        let places = meaning.places.join("; ").replace('|', r"\|").replace('<', r"\<");
         page.push_str(&format!("| ${name}$ | {} | {} | {places} |\n", meaning.value, meaning.unit));
     }
     page
@@ -136,7 +144,7 @@ fn symbols(legend: &[Meaning]) -> String {
 
 /// The recursion, part by part, in LaTeX or Markdown.
 pub(crate) fn steps(steps: &Steps, is_markdown: bool) -> String {
-    let printer = Printer { style: &Latex, table: &steps.table };
+    let printer = Printer { style: &Latex, table: &steps.table, letter: "", first: 0 };
     let mut page = String::new();
     for step in &steps.steps {
         if let Some(title) = &step.title {
@@ -150,10 +158,10 @@ pub(crate) fn steps(steps: &Steps, is_markdown: bool) -> String {
 
 /// Each output as a formula without delimiters.
 pub(crate) fn formulas(derivation: &Derivation) -> Vec<String> {
-    let printer = Printer { style: &Latex, table: &derivation.table };
+    let printer = Printer::of(derivation, &Latex);
     let mut all = Vec::new();
     if !derivation.names.is_empty() {
-        let line = |(k, name): (usize, &Expression)| format!("{} &= {}", Latex.named(k), printer.expression(name));
+        let line = |(k, name): (usize, &Expression)| format!("{} &= {}", printer.named(k), printer.expression(name));
         let lines: Vec<String> = derivation.names.iter().enumerate().map(line).collect();
         all.push(format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n")));
     }
@@ -208,6 +216,9 @@ fn equation(left: &str, formula: &Formula, name: &str, printer: &Printer<Latex>,
     for k in formula.distinct().filter(|&k| formula.entries[k] != Expression::ZERO) {
         let index: Vec<String> = formula.index(k).iter().map(usize::to_string).collect();
         lines.push(format!("{name}_{{{}}} &= {}", index.join(","), written[k]));
+    }
+    if lines.is_empty() {
+        return format!("{left} = 0");
     }
     format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", lines.join(" \\\\\n"))
 }

@@ -40,10 +40,24 @@ impl Derivation {
             Language::Text => text::page(self),
             Language::Latex => latex::page(self),
             Language::Markdown => latex::markdown(self),
-            Language::Sympy => sympy::module(self),
+            Language::Sympy => sympy::module(&[self]),
             Language::Python | Language::Matlab | Language::Julia => code::function(self, language),
         }
     }
+}
+
+/// Derivations of one robot as one text: in SymPy a module of all, in which no name is assigned twice.
+pub fn print_all(derivations: &[Derivation], language: Language) -> String {
+    if language == Language::Sympy {
+        let mut different: Vec<&Derivation> = Vec::new();
+        for derivation in derivations {
+            if !different.iter().any(|known| known.quantity == derivation.quantity) {
+                different.push(derivation);
+            }
+        }
+        return sympy::module(&different);
+    }
+    derivations.iter().map(|derivation| derivation.print(language)).collect::<Vec<_>>().join("\n")
 }
 
 impl Steps {
@@ -58,11 +72,16 @@ impl Steps {
     }
 }
 
+/// The digits of a fraction that is too long to read, with dots for the further ones.
+fn approximate(x: &Rational) -> Option<String> {
+    let (a, b) = x.parts();
+    (a.bits().max(b.bits()) > 40).then(|| format!("{}…", x.to_f64()))
+}
+
 /// How a language writes the parts of an expression.
 pub(crate) trait Style {
     fn number(&self, x: &Rational) -> String;
     fn name(&self, name: &Name) -> String;
-    fn named(&self, k: usize) -> String;
     /// A sine or cosine of an angle, to a power; `is_single` if the angle is one name.
     fn sine(&self, is_cosine: bool, angle: &str, is_single: bool, power: i32) -> String;
     fn root(&self, n: u64) -> String;
@@ -80,17 +99,30 @@ pub(crate) trait Style {
 pub(crate) struct Printer<'a, S> {
     pub style: &'a S,
     pub table: &'a Table,
+    /// The letter of named sub-expressions, and how many have numbers before the first.
+    pub letter: &'static str,
+    pub first: usize,
 }
 
-impl<S: Style> Printer<'_, S> {
+impl<'a, S: Style> Printer<'a, S> {
+    /// A printer of a derivation's expressions.
+    pub fn of(derivation: &'a Derivation, style: &'a S) -> Self {
+        Printer { style, table: &derivation.table, letter: derivation.letter_of_names, first: 0 }
+    }
+
+    /// The name of a sub-expression: x₁ for the first.
+    pub fn named(&self, k: usize) -> String {
+        self.style.name(&Name::new(self.letter, self.first + k + 1, ""))
+    }
+
     pub fn expression(&self, expression: &Expression) -> String {
         match expression {
             Expression::Number(x) => self.style.number(x),
             Expression::Atom(id) => self.atom(*id, 1),
-            Expression::Named(k) => self.style.named(*k),
+            Expression::Named(k) => self.named(*k),
             Expression::Power(base, k) => match &**base {
                 Expression::Atom(id) => self.atom(*id, *k),
-                Expression::Named(name) => self.style.power(&self.style.named(*name), *k),
+                Expression::Named(name) => self.style.power(&self.named(*name), *k),
                 other => self.style.power(&format!("({})", self.expression(other)), *k),
             },
             Expression::Product(x, factors) => self.product(x, factors),

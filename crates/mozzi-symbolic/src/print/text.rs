@@ -1,7 +1,7 @@
 //! Text with the book's letters.
 
 use super::legend::legend;
-use super::{Letter, Printer, Style};
+use super::{Letter, Printer, Style, approximate};
 use crate::atom::Name;
 use crate::derivation::{Derivation, Formula};
 use crate::expression::Expression;
@@ -37,20 +37,18 @@ impl Style for Text {
             (true, Rational::Small(3, 4)) => "¾".into(),
             (true, Rational::Small(1, 8)) => "⅛".into(),
             (true, _) => format!("({a}/{b})"),
-            _ => x.to_decimal().unwrap_or_else(|| format!("({x})")),
+            _ => x.to_decimal().or_else(|| approximate(x)).unwrap_or_else(|| format!("({x})")),
         }
     }
     fn name(&self, name: &Name) -> String {
         let number = name.number.map_or(String::new(), below);
-        let part = match (&name.part[..], name.number) {
+        let clean = name.part.replace(|c: char| !c.is_alphanumeric() && c != '\'', "_"); // a hyphen is no minus
+        let part = match (&clean[..], name.number) {
             ("", _) => String::new(),
             (part, Some(_)) if part.len() <= 2 => part.to_string(),
-            (part, _) => format!("_{}", part.replace(',', "_")),
+            (part, _) => format!("_{part}"),
         };
         format!("{}{number}{part}", dotted(name.letter, name.dots))
-    }
-    fn named(&self, k: usize) -> String {
-        format!("x{}", below(k + 1))
     }
     fn sine(&self, is_cosine: bool, angle: &str, is_single: bool, power: i32) -> String {
         let function = if is_cosine { "cos" } else { "sin" };
@@ -137,10 +135,10 @@ fn pieces(line: &str) -> impl Iterator<Item = &str> {
 
 pub(crate) fn page(derivation: &Derivation) -> String {
     let style = Text { has_fractions: derivation.has_fractions };
-    let printer = Printer { style: &style, table: &derivation.table };
+    let printer = Printer::of(derivation, &style);
     let mut lines = Vec::new();
     for (k, name) in derivation.names.iter().enumerate() {
-        lines.push(format!("{} = {}", style.named(k), minus(&printer.expression(name))));
+        lines.push(format!("{} = {}", printer.named(k), minus(&printer.expression(name))));
     }
     for formula in &derivation.formulas {
         let Letter { letter, dots, frame } = derivation.letter(formula);
@@ -161,7 +159,7 @@ pub(crate) fn page(derivation: &Derivation) -> String {
 /// The recursion, part by part.
 pub(crate) fn steps(steps: &Steps) -> String {
     let style = Text { has_fractions: steps.has_fractions };
-    let printer = Printer { style: &style, table: &steps.table };
+    let printer = Printer { style: &style, table: &steps.table, letter: "", first: 0 };
     let mut lines = Vec::new();
     for step in &steps.steps {
         if let Some(title) = &step.title {
@@ -264,7 +262,8 @@ fn entries(formula: &Formula, letter: &str, left: &str, written: &[String]) -> V
         lines.push(format!("{name} = {}", written[k]));
     }
     if zeros > 0 {
-        lines.push(format!("the other entries of {left} are 0"));
+        let which = if lines.is_empty() { "all" } else { "the other" };
+        lines.push(format!("{which} entries of {left} are 0"));
     }
     lines
 }

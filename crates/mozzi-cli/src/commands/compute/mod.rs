@@ -8,7 +8,7 @@ pub mod one_state;
 mod subject;
 mod table;
 
-use super::assemble::{needs_constraints, violation};
+use super::assemble::{check_constraints, violation};
 use crate::angles;
 use crate::failure::{self, Failure, Result};
 use crate::inputs::{InputArguments, STATE};
@@ -81,7 +81,8 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
         queries.into_iter().map(|query| arguments.subject(query, &rows, &model)).collect::<Result<Vec<_>>>()?;
     let applied = arguments.wrenches.read(&model)?;
     let environment = Environment { applied: &applied, ..model.environment() };
-    queries.iter().try_for_each(|&query| check_constraints(query, &model))?;
+    check_constraints(queries.iter().copied(), &model)?;
+    queries.iter().for_each(|&query| note_constraints(query, &model));
     if let Some(file) = &arguments.table.input {
         let (model, table, robot, &[query]) = (&model, &arguments.table, &arguments.robot, &queries[..]) else {
             return Err(Failure::wrong(format!(
@@ -155,18 +156,14 @@ fn vjp_of(query: Query<'static>) -> Result<Query<'static>> {
     })
 }
 
-/// Checks that there are constraints if they are needed, and prints a note if they are left out.
-fn check_constraints(query: Query, model: &Model) -> Result<()> {
-    if query.declaration().is_constrained {
-        needs_constraints(model)?;
-    }
+/// Prints a note if the robot's constraints are left out.
+fn note_constraints(query: Query, model: &Model) {
     let of_tree = ["forward_dynamics", "inverse_dynamics", "gravity_forces"];
     if model.constraint_rows() > 0 && of_tree.iter().any(|name| query.name().starts_with(name)) {
         failure::note(
             "the robot's constraints do not act in this quantity; `constrained-forward-dynamics` applies them",
         );
     }
-    Ok(())
 }
 
 impl ComputeArguments {
