@@ -108,6 +108,30 @@ fn a_frame_that_its_link_carries_is_no_cause_of_its_own() {
 }
 
 #[test]
+fn free_robots_whose_roots_are_other_links() {
+    let robot = |name: &str, stand: &str| {
+        let inertia = "<inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/>";
+        let link = |name: &str| format!("<link name='{name}'><inertial><mass value='1'/>{inertia}</inertial></link>");
+        let mut file = of_text(
+            name,
+            &format!(
+                "<robot name='r'>{stand}{}{}<joint name='j' type='continuous'><parent link='body'/><child link='arm'/>\
+                 <axis xyz='0 1 0'/></joint></robot>",
+                link("body"),
+                link("arm")
+            ),
+        );
+        let robot = file.model.description().clone().floating();
+        file.model = robot.frame("tcp", "arm", mozzi::SE3::translation([0.1, 0.0, 0.0])).build().unwrap();
+        file
+    };
+    let stand = "<link name='stand'/><joint name='s' type='fixed'><parent link='stand'/><child link='body'/>\
+                 <origin xyz='0 0 0.5'/></joint>";
+    let comparison = compare(&robot("a.urdf", stand), &robot("b.urdf", ""));
+    assert!(!comparison.causes().any(|cause| cause.contains("frame")), "{}", comparison.text());
+}
+
+#[test]
 fn a_frame_of_one_file_is_a_note() {
     let (with, without) = (mjcf("a.xml", ["<site name='eye'/>", TCP], NONE), mjcf("b.xml", ["", ""], NONE));
     for [a, b] in [[&with, &without], [&without, &with]] {

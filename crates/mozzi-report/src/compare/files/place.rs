@@ -98,13 +98,13 @@ impl<'d> Places<'d> {
         };
         let moves = |joint: &&Joint| joint.kind != JointKind::Fixed;
         let [here, there] = one.joints.iter().filter(moves).find_map(of)?;
-        (one.base == Base::Fixed && !same_place(here, there)).then_some([here, there])
+        (!same_place(here, there)).then_some([here, there])
     }
 
     /// A base that stands elsewhere: its turn is that of gravity, seen from the base. A free base that `is_held` stands
     /// nowhere in its file.
     pub fn of_base(&self, other: &str, is_held: bool) -> Option<Cause> {
-        let [here, there] = self.bases()?;
+        let [here, there] = self.bases().filter(|_| self.robots[0].base == Base::Fixed)?;
         let turn = (there.R * here.R.inverse()).log();
         if is_held && turn.norm() <= 1e-9 {
             return None;
