@@ -3,9 +3,10 @@
 use crate::angles;
 use crate::atom::Class;
 use crate::collect::Grouping;
-use crate::constrained::{self, Parts};
+use crate::constrained::Parts;
 use crate::cse;
 use crate::derivation::{Derivation, Formula, plain_names};
+use crate::divided::CONSTRAINED;
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL, MOST_LINKS};
 use crate::expression::Expression;
 use crate::fraction::Fraction;
@@ -137,7 +138,7 @@ fn derived(model: &Model, text: Option<&str>, query: Query, options: &Options) -
             })
             .collect()
     });
-    let parts = (quantity == constrained::QUANTITY).then(|| Parts::new(&robot)).transpose()?;
+    let parts = (quantity == CONSTRAINED).then(|| Parts::new(&robot)).transpose()?;
     let prove = |formulas: &[Formula], names: &[Expression]| match &parts {
         Some(parts) => parts.prove(&inputs, formulas, names),
         None => proof::prove(quantity, &kernel, &inputs, formulas, names),

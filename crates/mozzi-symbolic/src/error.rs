@@ -1,6 +1,6 @@
 //! Why there is no derivation.
 
-use crate::inverse::is_fraction;
+use crate::divided::is_fraction;
 use crate::read::NotRead;
 use mozzi::quantities::Query;
 use std::fmt;

@@ -21,8 +21,8 @@ pub struct CompareArguments {
     /// A robot's file (URDF, xacro, MJCF, SDFormat, or JSON of `mozzi convert`), or the name of an embedded robot
     model: String,
     /// Another file of the robot, such as a converter's: the two files are compared, without a simulator. The exit code
-    /// is 0 only if moving joints, limits, couplings, named frames, starts and states are the same, and the forces agree
-    /// to --tolerance
+    /// is 0 only if moving joints, limits, couplings, named frames, starts and states are the same, and the forces
+    /// agree to --tolerance
     other: Option<String>,
     /// With two files: the largest difference of M and of the forces, as a part of the largest number
     #[arg(long, value_name = "X", default_value = "1e-9", requires = "other")]

@@ -41,7 +41,7 @@ pub struct RobotFile {
     pub inertial_axes: BTreeMap<String, SO3>,
     /// The shapes of its links; none if those of its format are not read.
     pub shapes: Option<Vec<Shape>>,
-    /// Whether its format says where the robot starts. URDF does not: there a start is no difference.
+    /// Whether its format holds where the robot starts. URDF does not: there a start is no difference.
     pub has_start: bool,
     /// Its place, from which meshes are found; without it they are not read.
     pub path: Option<PathBuf>,

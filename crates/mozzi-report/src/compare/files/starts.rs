@@ -67,7 +67,7 @@ impl Pair {
         Pair { places: base.into_iter().chain(a.joint_names().zip(a.places()).filter_map(twin)).collect() }
     }
 
-    /// What differs between two states in words, each with its size.
+    /// The differences between two states in words, each with its size.
     fn differences(&self, [x, y]: [&State; 2]) -> Vec<(f64, String)> {
         let time = number("time", x.time, y.time);
         let places = self.places.iter().flat_map(|(name, [here, there])| {
