@@ -347,3 +347,22 @@ impl<'r> Impulses<'r> {
         self.contacts.planes.iter().map(|plane| plane.at(t)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{DVector, Law, slides_throughout};
+
+    #[test]
+    fn a_contact_slides_on_in_any_direction_of_the_plane() {
+        let (law, pressed) = (Law::Contact { mu: 0.5 }, DVector::from_vec(vec![1.0, 0.0, 0.0]));
+        let at = |x: f64, y: f64| DVector::from_vec(vec![0.0, x, y]);
+        let slides = |before, after| slides_throughout(law, 0, &pressed, &before, &after);
+        // within 60°
+        assert!(slides(at(1.0, 0.0), at(2.0, 0.1)) && slides(at(0.0, 1.0), at(0.1, 2.0)));
+        assert!(slides(at(1.0, 0.0), at(1.0, 1.7)) && !slides(at(1.0, 0.0), at(1.0, 1.8)));
+        assert!(!slides(at(0.0, 1.0), at(0.0, -1.0)) && !slides(at(0.0, 1.0), at(0.0, 0.0)));
+        let lifted = DVector::zeros(3);
+        assert!(!slides_throughout(law, 0, &lifted, &at(1.0, 0.0), &at(1.0, 0.0)));
+        assert!(!slides_throughout(Law::Stop, 0, &pressed, &at(1.0, 0.0), &at(1.0, 0.0)));
+    }
+}
