@@ -186,6 +186,9 @@ impl PyModel {
     /// True
     #[pyo3(signature = (*quantities, frame=None, threads=None))]
     fn compile(&self, quantities: Vec<String>, frame: Option<String>, threads: Option<Threads>) -> PyResult<Self> {
+        if frame.is_some() {
+            self.frame(frame.as_deref())?; // also where no quantity refers to one
+        }
         let asked = quantities.into_iter().map(|name| {
             let of_frame = Query::named(&name).is_ok_and(|query| is_of_frame(&query));
             (name, frame.clone().filter(|_| of_frame))
