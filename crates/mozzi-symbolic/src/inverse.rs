@@ -2,7 +2,7 @@
 //! that of M; with a task's Jacobian for A the lower right block of the inverse is −Λ.
 
 use crate::constrained::{self, Parts};
-use crate::error::{Error, MOST_VELOCITIES};
+use crate::error::{DIVIDES, Error, MOST_VELOCITIES};
 use crate::fraction::Fraction;
 use crate::kernel::{Kernel, check_fault};
 use crate::minors::Minors;
@@ -28,7 +28,7 @@ pub fn is_fraction(quantity: &str) -> bool {
 /// Refuses quantities and robots whose inverses are not derived.
 pub(crate) fn check_inverse(quantity: &'static str, velocities: usize) -> Result<(), Error> {
     match (is_fraction(quantity), velocities > MOST_VELOCITIES) {
-        (false, _) => Err(Error::NotPolynomial { quantity, what: "divides by pivots".into() }),
+        (false, _) => Err(Error::NotPolynomial { quantity, what: DIVIDES.into() }),
         (_, true) => Err(Error::InverseTooLong { quantity, velocities }),
         _ => Ok(()),
     }
