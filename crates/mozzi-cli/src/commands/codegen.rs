@@ -44,9 +44,8 @@ pub struct CodegenArguments {
     #[arg(long, value_name = "DIR", requires = "lang")]
     out: Option<PathBuf>,
     /// Keep this as a function argument instead of a constant: parameters (masses, inertias, frictions, springs),
-    /// gravity, base-twist, base-acceleration (the rates of that twist, not the acceleration of the base's origin), about
-    /// (reference point of a momentum), wrench (applied by the end
-    /// effector) or wrench=FRAME; may be repeated
+    /// gravity, base-twist, base-acceleration (the rates of that twist, not the acceleration of the base's origin),
+    /// about (reference point of a momentum), wrench (applied by the end effector) or wrench=FRAME; may be repeated
     #[arg(long, value_name = "WHAT", value_parser = argument)]
     argument: Vec<Argument>,
     /// Generate the directional derivative, too: a rate of each input is a further argument, that of each output a
