@@ -2,7 +2,6 @@
 //! iteration, which is exact only up to rounding.
 
 use crate::derivation::Formula;
-use crate::divided::CONSTRAINED;
 use crate::error::Error;
 use crate::expression::Expression;
 use crate::fraction::Fraction;
@@ -12,6 +11,9 @@ use crate::proof::{at_points, value_at};
 use crate::symbol::Symbol;
 use mozzi::Scalar;
 use mozzi::quantities::{ConstraintBias, ConstraintJacobian, InverseDynamics, MassMatrix, Query};
+
+/// The quantity's name.
+pub(crate) const QUANTITY: &str = "constrained_forward_dynamics";
 
 /// M, h, A and Ȧθ̇ at a state, by their kernels: [M Aᵀ; A 0] (θ̈, λ) = (τ − h, −Ȧθ̇).
 pub(crate) struct Parts([Kernel; 4]);
@@ -40,26 +42,26 @@ impl Parts {
         let n = inputs[1].len();
         let parts = self.at(&|x| x, inputs);
         let [M, forces, A, bias] = &parts[..] else { return Ok(Vec::new()) };
-        crate::kernel::check_fault(CONSTRAINED)?;
+        crate::kernel::check_fault(QUANTITY)?;
         let moves = |row: &&usize| A[**row * n..][..n].iter().any(|x| *x != Symbol::zero());
         let all: Vec<usize> = (0..bias.len()).collect();
         let rows: Vec<usize> = all.iter().filter(moves).copied().collect();
         let moving: Vec<Symbol> = rows.iter().flat_map(|&row| A[row * n..][..n].to_vec()).collect();
         let right: Vec<Symbol> = forces.iter().copied().chain(rows.iter().map(|&row| bias[row])).collect();
-        let mut solved = Solved::new(CONSTRAINED, n, M, &moving)?;
+        let mut solved = Solved::new(QUANTITY, n, M, &moving)?;
         let accelerations = (0..n).map(|i| solved.row(i, &right)).collect();
         let mut multipliers = vec![Symbol::zero(); bias.len()];
         for (k, &row) in rows.iter().enumerate() {
             multipliers[row] = solved.row(n + k, &right);
         }
-        let accelerations = solved.fraction(CONSTRAINED, accelerations, are_fractions)?;
-        Ok(vec![accelerations, solved.fraction(CONSTRAINED, multipliers, are_fractions)?])
+        let accelerations = solved.fraction(QUANTITY, accelerations, are_fractions)?;
+        Ok(vec![accelerations, solved.fraction(QUANTITY, multipliers, are_fractions)?])
     }
 
     /// Mθ̈ + Aᵀλ = τ − h and Aθ̈ = −Ȧθ̇, exactly, at random points.
     pub fn prove(&self, inputs: &[Vec<Symbol>], formulas: &[Formula], names: &[Expression]) -> Result<(), Error> {
         let outputs = |number: &dyn Fn(Symbol) -> Symbol, inputs: &[Vec<Symbol>]| self.at(number, inputs);
-        at_points(CONSTRAINED, outputs, inputs, |point, parts| {
+        at_points(QUANTITY, outputs, inputs, |point, parts| {
             let [M, forces, A, bias] = parts else { return Ok(()) };
             let (n, value) = (forces.len(), value_at(point, names));
             let values = |k: usize| formulas[k].entries.iter().map(&value).collect::<Vec<_>>();
@@ -75,7 +77,7 @@ impl Parts {
             match moved.chain(held).position(|rest| rest != Symbol::zero()) {
                 Some(entry) => {
                     let what = "the equations of motion do not hold".into();
-                    Err(Error::NotProven { quantity: CONSTRAINED, entry, what })
+                    Err(Error::NotProven { quantity: QUANTITY, entry, what })
                 }
                 None => Ok(()),
             }

@@ -3,10 +3,9 @@
 use crate::angles;
 use crate::atom::Class;
 use crate::collect::Grouping;
-use crate::constrained::Parts;
+use crate::constrained::{self, Parts};
 use crate::cse;
 use crate::derivation::{Derivation, Formula, plain_names};
-use crate::divided::CONSTRAINED;
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL, MOST_LINKS};
 use crate::expression::Expression;
 use crate::fraction::Fraction;
@@ -138,7 +137,7 @@ fn derived(model: &Model, text: Option<&str>, query: Query, options: &Options) -
             })
             .collect()
     });
-    let parts = (quantity == CONSTRAINED).then(|| Parts::new(&robot)).transpose()?;
+    let parts = (quantity == constrained::QUANTITY).then(|| Parts::new(&robot)).transpose()?;
     let prove = |formulas: &[Formula], names: &[Expression]| match &parts {
         Some(parts) => parts.prove(&inputs, formulas, names),
         None => proof::prove(quantity, &kernel, &inputs, formulas, names),
@@ -228,4 +227,29 @@ pub(crate) fn legend_of(table: &Table, expressions: &[&Expression], all: Vec<Mea
     let mut legend: Vec<Meaning> = all.into_iter().filter(|meaning| atoms.contains(&meaning.id)).collect();
     legend.sort_by_key(|meaning| crate::order::key(table, meaning.id));
     legend
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::proof::compare;
+
+    /// A formula that is wrong by a millionth of one entry is refused, a difference in rounding is not.
+    #[test]
+    fn wrong_formulas_are_refused() {
+        let text = mozzi_urdf::embedded::text("two_link_planar").expect("embedded");
+        let model = mozzi_urdf::parse("robot.urdf", text).expect("sound").description.build().expect("sound");
+        for name in ["mass_matrix", "forward_dynamics", "inverse_dynamics_vjp"] {
+            let query = Query::named(name).expect(name);
+            let found = derive(&model, Some(text), query, &Options::default()).expect(name);
+            for (part, is_wrong) in
+                [(Rational::new(1, 1_000_000), true), (Rational::new(1, 1_000_000_000_000_000), false)]
+            {
+                let mut other = found.clone();
+                let entry = &mut other.formulas[0].entries[0];
+                *entry = Expression::product(&Rational::ONE + &part, vec![entry.clone()]);
+                assert_eq!(compare(&other, &query, &model, None).is_err(), is_wrong, "{name}");
+            }
+        }
+    }
 }

@@ -1,8 +1,6 @@
 //! Why there is no derivation.
 
-use crate::divided::is_fraction;
 use crate::read::NotRead;
-use mozzi::quantities::Query;
 use std::fmt;
 
 /// Longer entries are not derived: a person reads none of them, and grouping takes longer and longer.
@@ -13,6 +11,9 @@ pub(crate) const LONGEST_IN_ALL: usize = 200_000;
 pub(crate) const MOST_VELOCITIES: usize = 4;
 /// The moving links of a robot whose equations are derived.
 pub(crate) const MOST_LINKS: usize = 1000;
+
+/// The reason against quantities that divide and are not written as fractions.
+pub(crate) const DIVIDES: &str = "divides by pivots";
 
 /// The reason why there is no derivation.
 #[derive(Clone, Debug)]
@@ -73,10 +74,9 @@ impl fmt::Display for Error {
             Error::NotRead(error) => write!(f, "the file's decimals: {error}"),
             Error::Model(error) => error.fmt(f),
             Error::NotPolynomial { quantity, what } => {
-                let name = quantity.replace('_', "-");
-                write!(f, "{name} {what}: it is no sum of products of sines and parameters")?;
-                let is_divided = Query::named(quantity).is_ok_and(|query| query.declaration().divides);
-                if !is_divided || is_fraction(quantity) {
+                let quantity = quantity.replace('_', "-");
+                write!(f, "{quantity} {what}: it is no sum of products of sines and parameters")?;
+                if what != DIVIDES {
                     return Ok(()); // this robot's is not derived, others' are
                 }
                 f.write_str(

@@ -1,9 +1,8 @@
 //! Quantities that divide, as fractions: by the adjugate of [M Aᵀ; A 0], whose entries are polynomials. Without A it is
 //! that of M; with a task's Jacobian for A the lower right block of the inverse is −Λ.
 
-use crate::constrained::Parts;
-use crate::divided::{CONSTRAINED, is_fraction};
-use crate::error::{Error, MOST_VELOCITIES};
+use crate::constrained::{self, Parts};
+use crate::error::{DIVIDES, Error, MOST_VELOCITIES};
 use crate::fraction::Fraction;
 use crate::kernel::{Kernel, check_fault};
 use crate::minors::Minors;
@@ -16,10 +15,20 @@ use mozzi::quantities::{
 use mozzi::random::Random;
 use mozzi::{Model, Scalar, TaskFrame};
 
+/// Accelerations of joint forces, by three kernels.
+const FORWARD_DYNAMICS: [&str; 3] =
+    ["forward_dynamics", "forward_dynamics_by_mass_matrix", "forward_dynamics_by_inverse_dynamics"];
+
+/// True if a quantity that divides is derived as a fraction.
+pub fn is_fraction(quantity: &str) -> bool {
+    FORWARD_DYNAMICS.contains(&quantity)
+        || ["mass_matrix_inverse", "task_space_dynamics", constrained::QUANTITY].contains(&quantity)
+}
+
 /// Refuses quantities and robots whose inverses are not derived.
 pub(crate) fn check_inverse(quantity: &'static str, velocities: usize) -> Result<(), Error> {
     match (is_fraction(quantity), velocities > MOST_VELOCITIES) {
-        (false, _) => Err(Error::NotPolynomial { quantity, what: "divides by pivots".into() }),
+        (false, _) => Err(Error::NotPolynomial { quantity, what: DIVIDES.into() }),
         (_, true) => Err(Error::InverseTooLong { quantity, velocities }),
         _ => Ok(()),
     }
@@ -51,7 +60,7 @@ impl Robot<'_> {
                 let inverse = (0..n * n).map(|k| solved.minors.adjugate(k / n, k % n)).collect();
                 Ok(vec![solved.fraction(quantity, inverse, self.are_fractions)?])
             }
-            CONSTRAINED => Parts::new(self)?.fractions(inputs, self.are_fractions),
+            constrained::QUANTITY => Parts::new(self)?.fractions(inputs, self.are_fractions),
             "task_space_dynamics" => self.task(query, inputs, &M),
             _ => {
                 let still = vec![Symbol::zero(); n];

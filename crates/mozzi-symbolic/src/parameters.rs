@@ -4,7 +4,7 @@ use crate::atom::{Atom, Class, Id, Name};
 use crate::letters::{plain_name, printable};
 use crate::rational::Rational;
 use crate::read::{At, NotRead, Part, agree, read_urdf};
-use crate::rotation::{exact, exact_axis};
+use crate::rotation::{exact, exact_axis, is_short};
 use crate::symbol::{Symbol, with_table};
 use mozzi::model::description::JointKind;
 use mozzi::{Description, Model, SE3, SO3, SpatialInertia, Vec3};
@@ -362,13 +362,6 @@ fn with_exact_axes(read: &mut Description<Symbol>, robot: &Description, is_such:
             new.kind = JointKind::Screw(axis);
         }
     }
-}
-
-/// Whether an axis is in the direction of small integers, so that its norm has a short root.
-pub(crate) fn is_short(axis: [f64; 3]) -> bool {
-    let least = axis.iter().map(|x| x.abs()).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
-    let is_integer = |x: f64| (x - x.round()).abs() < 1e-9;
-    (1..=100).any(|k| axis.iter().all(|x| is_integer(x / least * f64::from(k))))
 }
 
 fn fifteen_digits(x: f64) -> f64 {

@@ -202,28 +202,3 @@ pub(crate) fn random_positions(model: &Model, random: &mut Random) -> Vec<f64> {
     }
     theta
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::derive::{Options, derive};
-
-    /// A formula that is wrong by a millionth of one entry is refused, a difference in rounding is not.
-    #[test]
-    fn wrong_formulas_are_refused() {
-        let text = mozzi_urdf::embedded::text("two_link_planar").expect("embedded");
-        let model = mozzi_urdf::parse("robot.urdf", text).expect("sound").description.build().expect("sound");
-        for name in ["mass_matrix", "forward_dynamics", "inverse_dynamics_vjp"] {
-            let query = Query::named(name).expect(name);
-            let found = derive(&model, Some(text), query, &Options::default()).expect(name);
-            for (part, is_wrong) in
-                [(Rational::new(1, 1_000_000), true), (Rational::new(1, 1_000_000_000_000_000), false)]
-            {
-                let mut other = found.clone();
-                let entry = &mut other.formulas[0].entries[0];
-                *entry = Expression::product(&Rational::ONE + &part, vec![entry.clone()]);
-                assert_eq!(compare(&other, &query, &model, None).is_err(), is_wrong, "{name}");
-            }
-        }
-    }
-}

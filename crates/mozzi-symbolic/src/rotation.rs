@@ -2,7 +2,6 @@
 //! exactly. Kernels differ in where they take RᵀR for I, and a column of the regressor depends on others only if it is.
 
 use crate::atom::Atom;
-use crate::parameters::is_short;
 use crate::rational::Rational;
 use crate::symbol::{Symbol, with_table};
 use mozzi::{SO3, Scalar, ScrewAxis, Twist, Vec3};
@@ -104,6 +103,13 @@ fn unit(direction: [f64; 3]) -> Vec3<Symbol> {
     let mut unit = Vec3::zero();
     (unit.0[least], unit.0[i], unit.0[j]) = (along.into(), (&away * &a).into(), (&away * &b).into());
     unit
+}
+
+/// Whether an axis is in the direction of small integers, so that its norm has a short root.
+pub(crate) fn is_short(axis: [f64; 3]) -> bool {
+    let least = axis.iter().map(|x| x.abs()).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
+    let is_integer = |x: f64| (x - x.round()).abs() < 1e-9;
+    (1..=100).any(|k| axis.iter().all(|x| is_integer(x / least * f64::from(k))))
 }
 
 /// The rational point of the unit circle in the direction (x, y).

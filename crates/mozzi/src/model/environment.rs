@@ -23,7 +23,7 @@ pub struct Environment<'a, S = f64> {
     /// The twist of {s} in its own coordinates. A fixed base moves with {s}; a floating base's configuration is
     /// relative to it.
     pub base_twist: Twist<S>,
-    /// Its acceleration in its own coordinates, gravity not included.
+    /// The rates (ω̇, v̇) of that twist, gravity not included: not the acceleration of the origin, which is v̇ + ω × v.
     pub base_acceleration: Twist<S>,
     /// Wrenches that the frames apply to the environment, each in its frame's own coordinates: F_tip, and any other.
     pub applied: &'a [(FrameId, Wrench<S>)],
