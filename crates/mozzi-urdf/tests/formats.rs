@@ -202,7 +202,8 @@ fn what_is_lost_is_told() {
         written.losses,
         ["rotor `t`: M differs", "the name of the base's free joint, `f`", "the named states `up`"]
     );
-    assert_eq!(written.remarks, ["Gazebo refuses links without mass: `b:j`"]);
+    let of_drake = "Drake ignores the gravity of a file: set [0.0, 0.0, -1.62] in the program";
+    assert_eq!(written.remarks, ["Gazebo refuses links without mass: `b:j`", of_drake]);
     let there = parse("r.sdf", &written.text).unwrap().description;
     assert_eq!((there.gravity, there.frames[0].name.as_str(), there.joints.len()), (robot.gravity, "s", 3));
     assert_eq!((there.joints[0].armature, there.joints[0].spring_reference, there.joints[2].damping), (0.2, 0.1, 0.1));
