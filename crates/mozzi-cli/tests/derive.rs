@@ -99,7 +99,7 @@ fn what_cannot_be_derived_is_refused_by_name() {
     }
 }
 
-/// What is derived before a refusal is printed; the reason is the robot's part that is no polynomial.
+/// Quantities that are derived before a refused one are printed; the refusal names the part that is no polynomial.
 #[test]
 fn refusals_tell_their_reason() {
     let body = "<inertial pos='0 0 -0.2' mass='2' diaginertia='0.1 0.2 0.25'/>";

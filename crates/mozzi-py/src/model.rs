@@ -64,9 +64,11 @@ impl PyModel {
     /// The quantity of this name; if it has a frame, for this frame, by default the end effector.
     pub fn query(&self, name: &str, frame: Option<&str>) -> PyResult<Query<'static>> {
         let query = Query::named(name).map_err(of_model)?;
-        if is_of_frame(&query) || frame.is_some() {
-            let frame = self.frame(frame)?; // a name that no frame has is an error of any quantity
-            return Ok(if is_of_frame(&query) { query.of(frame) } else { query });
+        if is_of_frame(&query) {
+            return Ok(query.of(self.frame(frame)?));
+        }
+        if frame.is_some() {
+            self.frame(frame)?; // a name that no frame has is an error of any quantity
         }
         Ok(query)
     }

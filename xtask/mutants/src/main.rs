@@ -1,8 +1,8 @@
 //! `mozzi-mutants FOLDER SAMPLE SEED`: puts a sample of faults into a clone of the sources in FOLDER/tree, each dormant
 //! until the environment names it, compiles the tests once, and shows each fault to the tests that pass it.
 //!
-//! What no test notices is written to FOLDER/missed.md; the last line counts. For a crate of its own a fault costs a
-//! compilation, here a few seconds.
+//! FOLDER/missed.md lists the faults that no test notices; the last line of the output counts them. A fault takes a few
+//! seconds, because the crates are not compiled again for each.
 
 mod candidates;
 mod shown;

@@ -93,7 +93,7 @@ fn on_all_cores(count: usize, each: impl Fn(usize) -> Result<(), String> + Sync)
     failed.into_inner().expect("no panics")
 }
 
-/// Of each fault the tests that pass it, the quickest first.
+/// The tests that pass each fault, the quickest first.
 pub type Passed = BTreeMap<usize, Vec<usize>>;
 
 /// All tests, and which pass a fault.

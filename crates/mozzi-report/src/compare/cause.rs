@@ -178,8 +178,7 @@ pub fn suspects(robot: &Description, answer: &Answer, from: &Robot, coupled: boo
         mine.joints.iter().filter_map(change).collect()
     };
     // Pinocchio stores damping and friction but omits them from its inverse dynamics, and has no springs; MuJoCo models
-    // dry friction as a constraint. Springs are reported by their forces: without any, as of a URDF, the library has
-    // none
+    // dry friction as a constraint. A library that reports no spring forces, such as MuJoCo of a URDF, has no springs
     let pinocchio = answer.library == "Pinocchio";
     type Make = fn(Vec<Change>) -> Cause;
     let has_springs = from.forces.contains_key("spring");
