@@ -95,8 +95,8 @@ unsafe fn scatter(numbers: &[f64], &[_, rows, columns]: &[usize; 3], out: &Out) 
     }
 }
 
-/// Computes the quantity of this index, which has I inputs and O outputs: constants, so that the loops over them are
-/// none.
+/// Computes the quantity of this index, which has I inputs and O outputs: constants, so that the compiler
+/// unrolls the loops over them.
 ///
 /// # Safety
 /// Handles, inputs and outputs are null or as mozzi.h promises; there are as many as the quantity has.
@@ -192,7 +192,7 @@ unsafe fn checked<const I: usize, const O: usize>(
         (&own, &own_shapes)
     };
 
-    // Pointers first, numbers after them: so many instructions later the slices can be loaded at once.
+    // all pointers are read before the numbers they point to: the loads overlap
     assert!(declaration.inputs.len() == I && declaration.outputs.len() == O);
     let mut state: [&[f64]; I] = [&[]; I];
     for k in 0..I {

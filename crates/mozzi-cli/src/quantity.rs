@@ -4,7 +4,7 @@ use crate::failure::Result;
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::error::ErrorKind;
 use mozzi::Model;
-use mozzi::quantities::{ALIASES, LIST, Of, Query};
+use mozzi::quantities::{ALIASES, LIST, Query};
 use std::ffi::OsStr;
 
 /// Any quantity of the list, with `-` or `_` between its words, or by an alias.
@@ -78,12 +78,7 @@ pub fn hyphenated(name: &str) -> String {
     name.replace('_', "-")
 }
 
-/// True if the quantity refers to a frame.
-pub fn is_of_a_frame(query: Query) -> bool {
-    matches!(query.declaration().of, Of::Frame | Of::Task)
-}
-
 /// The quantity; if it refers to a frame, the end effector's.
 pub fn of_end_effector<'q>(query: Query<'q>, model: &Model) -> Result<Query<'q>> {
-    Ok(if is_of_a_frame(query) { query.of(model.end_effector()?) } else { query })
+    Ok(if query.declaration().needs_frame() { query.of(model.end_effector()?) } else { query })
 }

@@ -110,7 +110,7 @@ fn a_program_that_would_be_too_long_is_declined_at_once() {
     }
     let run = mozzi(&["simulate", &robot, "--compiled", "--time", "0.001", "--method", "euler"]);
     let said = String::from_utf8_lossy(&run.stderr);
-    assert!(run.status.success() && said.contains("longer than the caches serve"), "{said}");
+    assert!(run.status.success() && said.contains("would not fit the instruction cache"), "{said}");
 }
 
 #[test]

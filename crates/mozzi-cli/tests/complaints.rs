@@ -158,7 +158,12 @@ fn what_is_odd_is_said_in_a_line_and_shown_by_check() {
 fn what_changes_the_motion_is_always_said_and_looks_are_counted() {
     let folder = folder("motion_first");
     let bodies: String = (0..4)
-        .map(|i| format!("<body><joint range='9 -9' axis='{} 0 1'/><inertial mass='1' diaginertia='1 1 3'/>", i % 2))
+        .map(|i| {
+            format!(
+                "<body><joint range='9 -9' axis='{} 0 1'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 3'/>",
+                i % 2
+            )
+        })
         .collect();
     let model = format!(
         "<mujoco><option density='1'/><worldbody><light/><geom size='1' rgba='1 0 0 1'/><body gravcomp='1'>\

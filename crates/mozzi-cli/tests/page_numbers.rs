@@ -7,7 +7,7 @@ use crate::common;
 use browser::{browser, look, url};
 use common::{file, folder, numbers, text};
 use mozzi::Model;
-use mozzi::quantities::{LIST, Of, Query};
+use mozzi::quantities::{LIST, Query};
 use mozzi::testing::{four_bar, state};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ fn case(page: &std::path::Path, arguments: &[&str], model: Model) -> Case {
     let state = state(&model, 11);
     let frame = model.frames().last().map(|(_, name)| name.to_string()).expect("a frame");
     let request = |quantity: &mozzi::quantities::Declaration| {
-        let frame = matches!(quantity.of, Of::Frame | Of::Task).then(|| frame.clone());
+        let frame = quantity.needs_frame().then(|| frame.clone());
         let inputs = quantity.inputs.iter().map(|input| (input.name.to_string(), json!(given(input.name, &state))));
         json!({ "request": { "quantity": quantity.name, "frame": frame }, "inputs": inputs.collect::<serde_json::Map<_, _>>() })
     };

@@ -6,7 +6,7 @@ use crate::common;
 
 use browser::{browser, run, url};
 use common::{folder, json, numbers, text};
-use mozzi::quantities::{LIST, Of, Query};
+use mozzi::quantities::{LIST, Query};
 use mozzi::testing::state;
 use mozzi::{Description, Model};
 use serde_json::{Value, json};
@@ -85,7 +85,7 @@ fn case(page: &Path, model: Model) -> (Value, Model, [Vec<f64>; 3], String) {
     let state = state(&model, 11);
     let frame = model.frames().last().map(|(_, name)| name.to_string()).expect("a frame");
     let request = |quantity: &mozzi::quantities::Declaration| {
-        let frame = matches!(quantity.of, Of::Frame | Of::Task).then(|| frame.clone());
+        let frame = quantity.needs_frame().then(|| frame.clone());
         let inputs = quantity.inputs.iter().map(|input| (input.name.to_string(), json!(given(input.name, &state))));
         json!({ "request": { "quantity": quantity.name, "frame": frame }, "inputs": inputs.collect::<serde_json::Map<_, _>>() })
     };

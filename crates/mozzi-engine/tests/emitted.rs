@@ -211,9 +211,9 @@ fn c() {
     let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"];
     let ways: [(&str, Precision, &[&str]); 4] = [
         ("gcc", Precision::F64, &["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]),
-        ("gcc", Precision::F32, &["-O1"]),
+        ("gcc", Precision::F32, &["-O1", "-Wdouble-promotion"]),
         ("clang", Precision::F64, &["-O1"]),
-        ("clang", Precision::F32, &["-O1"]),
+        ("clang", Precision::F32, &["-O1", "-Wdouble-promotion"]),
     ];
     for (compiler, precision, flags) in ways {
         if !exists(compiler) {

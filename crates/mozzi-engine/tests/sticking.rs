@@ -19,15 +19,11 @@ fn starts(model: &Model) -> [Vec<f64>; 3] {
     tables
 }
 
-fn is_dry(model: &Model) -> bool {
-    model.joints().any(|joint| joint.friction > 0.0)
-}
-
 #[test]
 fn many_robots_with_dry_friction_move_as_each_alone() {
     let (duration, steps) = (0.05, 20);
     for model in [tree(5, 3, 0), floating_tree(3, 3, 0)] {
-        assert!(is_dry(&model));
+        assert!(model.has_dry_friction());
         let (nq, n, batch) = (model.nq(), model.n(), Batch::new(&model));
         let [theta, dtheta, tau] = starts(&model);
         let environment = BatchEnvironment::from(model.environment());
@@ -84,6 +80,28 @@ fn what_friction_holds_stays_unless_sticking_is_switched_off() {
     assert!(q != theta, "μ sgn θ̇ is 0 at rest");
     let error = smooth.simulate(&mut q, &mut v, &tau, &environment, Method::MoreauJean, 1e-3, 1).expect_err("refused");
     assert!(error.to_string().contains("the method is Moreau-Jean"), "{error}");
+}
+
+/// Friction of a mimic joint alone, such as a gripper's finger, holds its source.
+#[test]
+fn friction_of_a_mimic_joint_holds() {
+    let mut robot = tree(2, 4, 1).description().clone();
+    for joint in &mut robot.joints {
+        joint.friction = if joint.mimic.is_some() { 1e6 } else { 0.0 };
+    }
+    let source =
+        robot.joints.iter().find_map(|joint| Some(joint.mimic.as_ref()?.joint.clone())).expect("a mimic joint");
+    let model = robot.build().expect("sound");
+    let held = model.joint_names().position(|name| name == source).expect("an independent joint");
+    let [theta, _, tau] = starts(&model);
+    let (mut q, mut v) = (theta.clone(), vec![0.0; tau.len()]);
+    let environment = BatchEnvironment::from(model.environment());
+    let batch = Batch::new(&model);
+    batch.simulate(&mut q, &mut v, &tau, &environment, Method::Automatic, 0.1, 100).expect("motions");
+    for k in 0..ROBOTS {
+        let (j, n) = (held, model.n());
+        assert!((q[k * n + j] - theta[k * n + j]).abs() < 1e-12 && v[k * n + j].abs() < 1e-12, "{}", v[k * n + j]);
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::robot::{Asked, Machine, Robot};
 use crate::threads::Threads;
 
 use mozzi::FrameId;
-use mozzi::quantities::{Of, Query};
+use mozzi::quantities::Query;
 use mozzi_engine::{Engine, Refusal};
 use mozzi_report::text::scalar;
 use pyo3::prelude::*;
@@ -64,7 +64,7 @@ impl PyModel {
     /// The quantity of this name; if it has a frame, for this frame, by default the end effector.
     pub fn query(&self, name: &str, frame: Option<&str>) -> PyResult<Query<'static>> {
         let query = Query::named(name).map_err(of_model)?;
-        if is_of_frame(&query) {
+        if query.declaration().needs_frame() {
             return Ok(query.of(self.frame(frame)?));
         }
         if frame.is_some() {
@@ -76,10 +76,6 @@ impl PyModel {
     pub fn built(model: Result<mozzi::Model, mozzi::Error>) -> PyResult<Self> {
         model.map(Self::of).map_err(of_model)
     }
-}
-
-fn is_of_frame(query: &Query) -> bool {
-    matches!(query.declaration().of, Of::Frame | Of::Task)
 }
 
 /// A new array of these numbers.
@@ -192,7 +188,7 @@ impl PyModel {
             self.frame(frame.as_deref())?; // also where no quantity refers to one
         }
         let asked = quantities.into_iter().map(|name| {
-            let of_frame = Query::named(&name).is_ok_and(|query| is_of_frame(&query));
+            let of_frame = Query::named(&name).is_ok_and(|query| query.declaration().needs_frame());
             (name, frame.clone().filter(|_| of_frame))
         });
         let before = self.0.compiled.iter().flat_map(|machine| machine.names.clone());

@@ -66,7 +66,7 @@ impl<'a, 'py, T: Element> Results<'a, 'py, T> {
     /// In the caller's arrays, directly if they can be written and share no memory with the inputs or each other.
     ///
     /// # Errors
-    /// `TypeError`, `ValueError` if an object is not an array, or has another shape.
+    /// `TypeError`, `ValueError` if an object is not an array, has another shape, or is given for two outputs.
     pub fn in_arrays(
         query: &Query,
         shapes: &[Vec<usize>],
@@ -74,14 +74,21 @@ impl<'a, 'py, T: Element> Results<'a, 'py, T> {
         inputs: &[&Bound<'py, PyAny>],
     ) -> PyResult<Self> {
         let outputs = query.declaration().outputs;
-        for ((array, output), shape) in arrays.iter().zip(outputs).zip(shapes) {
-            let name = if outputs.len() == 1 { "out".to_string() } else { format!("out.{}", output.name) };
+        let name = |k: usize| if outputs.len() == 1 { "out".to_string() } else { format!("out.{}", outputs[k].name) };
+        for (k, (array, shape)) in arrays.iter().zip(shapes).enumerate() {
+            let name = name(k);
             if !array.is_instance(&function(array.py(), "ndarray")?)? {
                 return Err(PyTypeError::new_err(format!("{name} is no array, expected a numpy.ndarray")));
             }
             let found: Vec<usize> = array.getattr("shape")?.extract()?;
             if found != *shape {
                 return Err(wrong_shape(&name, &found, shown(shape)));
+            }
+        }
+        for (k, array) in arrays.iter().enumerate() {
+            if let Some(first) = arrays[..k].iter().position(|other| other.is(array)) {
+                let message = format!("{} and {} are the same array, expected one for each", name(first), name(k));
+                return Err(PyValueError::new_err(message));
             }
         }
         // from here on no Python code runs that could move the numbers

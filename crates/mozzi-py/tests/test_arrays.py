@@ -137,9 +137,10 @@ def test_out_of_several_results(ur5, random):
             found = ur5.energy_regressors(theta, dtheta, out=places)
             assert type(found) is mozzi.EnergyRegressors and all(x is y for x, y in zip(found, places))
             assert all(np.array_equal(x, y) for x, y in zip(found, expected))
-        same = np.zeros_like(expected[0])  # written twice: the last result stays
-        ur5.energy_regressors(theta, dtheta, out=[same, same])
-        assert np.array_equal(same, expected[-1])
+        same = np.zeros_like(expected[0])
+        first, second = (f"out.{name}" for name in expected._fields)
+        with pytest.raises(ValueError, match=f"^{first} and {second} are the same array, expected one for each$"):
+            ur5.energy_regressors(theta, dtheta, out=[same, same])
         names = f"expected 2 arrays: {', '.join(expected._fields)}"
         with pytest.raises(ValueError, match=f"^out has 3 arrays, {names}$"):
             ur5.energy_regressors(theta, dtheta, out=[same, same, same])

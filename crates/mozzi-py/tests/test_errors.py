@@ -143,7 +143,7 @@ def test_a_warning_is_pythons():
 
 
 def test_what_changes_the_motion_is_the_first_warning():
-    inertial = '<inertial mass="1" diaginertia="1 1 3"/>'
+    inertial = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 3"/>'
     text = f"""<mujoco><worldbody><light/><body name="b"><joint range="9 -9"/>{inertial}<geom size="1" rgba="1 0 0 1"/>
         <body gravcomp="1"><geom size="1"/></body></body></worldbody></mujoco>"""
     with pytest.warns(mozzi.LoadWarning) as found:
@@ -195,7 +195,7 @@ def test_arguments_of_python(ur5):
         mozzi.Model.inverse_dynamics(1, ZERO, ZERO, ZERO)
     with refused(TypeError, "frame is a int, expected a str"):
         ur5.body_jacobian(ZERO, 1)
-    for rows, kind in [(3, "int"), ("ab", "str"), ([-1], "list"), ([1.5], "list")]:
+    for rows, kind in [(3, "int"), ("ab", "str"), ([-1], "list"), ([1.5], "list"), ([True, False], "list")]:
         with refused(TypeError, f"rows is {rows} ({kind}), expected a sequence of row numbers from 0 to 5"):
             ur5.task_space_dynamics(ZERO, ZERO, rows=rows)
     with pytest.raises(ValueError, match=r"rows is \[1, 1\], expected distinct row numbers from 0 to 5"):

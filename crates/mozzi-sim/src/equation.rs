@@ -311,7 +311,11 @@ impl<'m, I: Input> Equation<'m, I> {
             return Ok(());
         }
         let j = values.iter().position(|x| !(x.abs() < most)).unwrap_or_default();
-        let (joint, value) = (self.joint(j), values[j]);
+        let joint = match quantity {
+            "theta" => self.model.position_names().nth(j).unwrap_or_default().to_string(),
+            _ => self.joint(j),
+        };
+        let value = values[j];
         Err(Error::Diverged { quantity, joint, value, step: self.step, time, step_size: self.step_size })
     }
 

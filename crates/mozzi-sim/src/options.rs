@@ -36,7 +36,7 @@ pub struct Options {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Friction {
     /// Dry friction: |f| ≤ μ, a joint at rest sticks as long as |f| < μ holds it, and a moving one loses μ |θ̇|. See
-    /// [`crate::one_sided`]. In rollouts and in batches of many robots it is μ sgn θ̇ with sgn 0 = 0, without sticking.
+    /// [`crate::one_sided`]. Rollouts, and batches without sticking, use μ sgn θ̇ with sgn 0 = 0.
     Coulomb,
     /// μ tanh(θ̇ / v_s), smooth, so that Runge-Kutta keeps its order; it does not stick but creeps at up to about v_s.
     /// Stiff for small v_s: the explicit methods here need δt below about v_s M / μ.

@@ -91,7 +91,7 @@ impl Stall {
 
 /// The error of an adaptive step that would be below rounding of t.
 pub(crate) fn too_short(model: &Model, [time, step]: [f64; 2], tolerance: f64, j: Option<usize>) -> Error {
-    let cause = format!("a tolerance of {tolerance:e} asks for steps below {step:e} s; {}", cause(false));
+    let cause = format!("a tolerance of {tolerance:e} needs steps below {step:e} s; {}", cause(false));
     Error::Stalled { time, joint: velocity(model, j), cause }
 }
 
@@ -115,7 +115,7 @@ const DAMPED: &str = "its damping stops it within less than a step, which makes 
 
 fn cause(chatters: bool) -> &'static str {
     if chatters {
-        "its velocity changes its sign again and again; the input jumps there, as sgn does"
+        "the sign of its velocity alternates: the input jumps there, as sgn does"
     } else {
         "the motion is stiff, or its input jumps; a larger tolerance may help, or the methods `midpoint` and `moreau`"
     }

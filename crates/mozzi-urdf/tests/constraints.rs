@@ -227,7 +227,11 @@ fn what_is_wrong_in_a_file_has_its_place() {
         ("{\"frame\": \"c\"}}", "{\"frame\": \"q\"}}", "2:3: constraint `foot`: b: there is no link or frame `q`"),
         ("0.4", "-0.4", "3:3: constraint `rod`: length: is -0.4 m"),
         ("[0.5]", "[0.5, 1]", "constraints[4].polynomial is [0.5,1], expected one number"),
-        ("\"ratio\": -3", "\"ratio\": 0", "constraint `sum`: joint: has `k` times 0, expected a finite number but 0"),
+        (
+            "\"ratio\": -3",
+            "\"ratio\": 0",
+            "constraint `sum`: joint: has `k` times 0, expected a finite number other than 0",
+        ),
         ("\"joint\": \"k\", \"ratio\"", "\"joint\": \"j\", \"ratio\"", "constraint `sum`: joint: has `j` twice"),
         ("\"ratio\": -3", "\"rate\": -3", "`rate` is not an entry of constraints[5].joint[1]"),
         (

@@ -92,7 +92,7 @@ fn constraints_and_motors_of_nothing() {
         hold(r, Constraint::point("pin", "fore", Anchor::world(at(f64::NAN))));
     });
     refuses("`plate` and `trunk` are fixed to each other", |r| hold(r, Constraint::weld("w", "plate", "trunk")));
-    refuses("hold `screws`, which is fixed", |robot| robot.motors = Some(vec!["screws".into()]));
+    refuses("hold `screws`, a fixed joint", |robot| robot.motors = Some(vec!["screws".into()]));
     refuses("hold `knuckle`, a mimic joint", |robot| robot.motors = Some(vec!["knuckle".into()]));
     refuses("`screws` is fixed, expected joints that move", |robot| {
         let joint = JointState { name: "screws".into(), positions: vec![], velocities: vec![] };
@@ -121,10 +121,25 @@ fn chains_that_are_tied_to_others() {
     let inside = model().with_rotor("belt", 0.1, &[("elbow", 2.0), ("shoulder", 1.0)]).unwrap();
     assert_eq!(chain(inside).unwrap().description().rotors.len(), 1);
     let held = |one: Constraint| chain(model().with_constraints([one]).unwrap());
-    says(held(Constraint::point("rod", "fore", Anchor::frame("eye").at(at(0.5)))), "`rod`, which holds a part off");
-    says(held(sum(vec![gear("elbow", 1.0)], vec![gear("knuckle", 1.0)], [0.0; 5])), "`sum`, which holds a part off");
+    says(
+        held(Constraint::point("rod", "fore", Anchor::frame("eye").at(at(0.5)))),
+        "`rod`, which holds {s} or a part off",
+    );
+    says(
+        held(sum(vec![gear("elbow", 1.0)], vec![gear("knuckle", 1.0)], [0.0; 5])),
+        "`sum`, which holds {s} or a part off",
+    );
     let pinned = held(Constraint::point("pin", "fore", Anchor::world(at(0.6)))).unwrap();
     assert_eq!(pinned.description().constraints.len(), 1);
+    // {s} is that of the base: a part that begins elsewhere has another one
+    let arm = |one: Constraint| {
+        let model = model().with_constraints([one]).unwrap();
+        model.sub_chain(model.frame("upper").unwrap(), to(&model))
+    };
+    says(arm(Constraint::point("pin", "fore", Anchor::world(at(0.6)))), "`pin`, which holds {s} or a part off");
+    assert!(
+        arm(Constraint::point("pin", "thumb", Anchor::world(at(0.6)))).unwrap().description().constraints.is_empty()
+    );
     assert!(pinned.without_constraints().unwrap().description().constraints.is_empty());
 }
 

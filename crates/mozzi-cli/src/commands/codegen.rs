@@ -4,7 +4,7 @@ use super::assemble::check_constraints;
 use super::info;
 use crate::failure::{Failure, Result};
 use crate::json;
-use crate::quantity::{hyphenated, is_of_a_frame, quantity};
+use crate::quantity::{hyphenated, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use crate::state::check_frames;
 use crate::task::TaskArguments;
@@ -141,7 +141,8 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
     arguments.task.check_use(queries.iter().copied())?;
     if queries.is_empty() {
         let has_end = end_effector(&model).is_some();
-        queries = (0..LIST.len()).map(Query::at).filter(|query| has_end || !is_of_a_frame(*query)).collect();
+        queries =
+            (0..LIST.len()).map(Query::at).filter(|query| has_end || !query.declaration().needs_frame()).collect();
     }
     let rows = arguments.task.rows()?;
     let subject = |query| arguments.task.subject(query, &rows, &model);

@@ -146,7 +146,7 @@ fn convergence(arguments: &ConvergenceArguments) -> Result<String> {
     let steps = coarsest as f64 * f64::from(1 << u32::from(arguments.halvings));
     let cause = format!("--step {} with --halvings {}", arguments.step.trim(), arguments.halvings);
     Workload { cause, steps, rows: 0.0, bytes: 0.0, place: "memory".into(), flag: None }.check(false)?;
-    if model.joints().any(|joint| joint.friction != 0.0) {
+    if model.has_dry_friction() {
         failure::note("dry friction is left out: the methods are those of smooth motions");
     }
     let mut progress = None;

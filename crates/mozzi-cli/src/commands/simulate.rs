@@ -150,9 +150,7 @@ fn damping_rates(model: &Model, motors: &dyn Input, theta: &[f64]) -> Result<Vec
     let M = model.mass_matrix(theta)?;
     let (mut stiffness, mut damping) = (vec![0.0; model.n()], vec![0.0; model.n()]);
     motors.gains(&mut stiffness, &mut damping);
-    for (joint, place) in model.joints().zip(model.places()) {
-        place.velocities().for_each(|j| damping[j] += joint.damping);
-    }
+    damping.iter_mut().zip(model.damping()).for_each(|(sum, own)| *sum += own);
     let rate = |j: usize| (damping[j] / M[(j, j)]).max((stiffness[j] / M[(j, j)]).sqrt());
     Ok((0..model.n()).map(rate).collect())
 }

@@ -55,11 +55,11 @@ impl std::fmt::Display for Refusal {
         f.write_str(match self {
             Refusal::NotAsked => "machine code was not requested",
             Refusal::NotYet => "too few states so far to pay for machine code",
-            Refusal::Processor => "the processor has not the instructions",
+            Refusal::Processor => "the processor lacks the instructions",
             Refusal::System => "on AArch64, machine code is for Linux, Android and macOS",
             Refusal::Program => "the program has a function without machine code, or too many arrays",
-            Refusal::Long => "the code would be longer than the caches serve",
-            Refusal::Memory => "the system grants no executable memory",
+            Refusal::Long => "the code would not fit the instruction cache",
+            Refusal::Memory => "the system forbids executable memory",
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Gains, errors};
 use crate::Error;
-use crate::error::check;
+use crate::error::{check, check_open};
 use crate::trajectories::Reference;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -41,8 +41,8 @@ impl<'m, R: Reference> Standing<'m, R> {
     /// On these points of the robot, which are at rest on the plane z = 0 of `ground`, with gains on accelerations.
     ///
     /// # Errors
-    /// [`mozzi::Error::WrongLength`], [`mozzi::Error::BadArgument`] for gains that are negative or not finite, or no
-    /// feet.
+    /// [`mozzi::Error::WrongLength`], [`mozzi::Error::BadArgument`] for gains that are negative or not finite, no feet,
+    /// or a robot with constraints.
     pub fn new(
         model: &'m Model,
         reference: R,
@@ -52,6 +52,7 @@ impl<'m, R: Reference> Standing<'m, R> {
     ) -> Result<Self, Error> {
         gains.check(model)?;
         check(!feet.is_empty(), "feet", "none", "at least one contact point")?;
+        check_open(model, "a robot on standing feet")?;
         Ok(Standing { model, reference, gains, feet, ground, least: 0.0, forces: Vec::new() })
     }
 
@@ -140,6 +141,9 @@ impl<R: Reference> Input for Standing<'_, R> {
     }
 }
 
+/// ‖Ax + s − b‖ over the size of its terms, below which a search that ended early is an answer.
+const FEASIBLE: f64 = 1e-6;
+
 /// The x of min ½xᵀPx + qᵀx with Ax + s = b, s in the cones.
 fn solve(
     P: &DMatrix<f64>,
@@ -163,10 +167,10 @@ fn solve(
     let solver = DefaultSolver::new(&sparse(P), q, &sparse(A), b, cones, settings);
     let mut solver = solver.map_err(|error| wrong(error.to_string()))?;
     solver.solve();
+    let is_feasible = solver.solution.r_prim < FEASIBLE;
     match solver.solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
-            Ok(solver.solution.x.clone())
-        }
+        SolverStatus::Solved => Ok(solver.solution.x.clone()),
+        SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress if is_feasible => Ok(solver.solution.x.clone()),
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Err(wrong("impossible".to_string())),
         status => Err(wrong(format!("not found ({status})"))),
     }

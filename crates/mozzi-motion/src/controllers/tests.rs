@@ -6,7 +6,7 @@ use crate::trajectories::{Hold, Line, Profile, Reference, Timed};
 use mozzi::model::integrate;
 use mozzi::testing::{state, tree, wrench};
 use mozzi::{SE3, SpatialInertia, Task, TaskFrame, Twist, Vec3, Wrench};
-use mozzi_sim::{Input, Options, applied};
+use mozzi_sim::{ContactPoint, Input, Options, applied};
 
 fn robot(name: &str) -> Model {
     mozzi_urdf::open(name).expect("embedded").build().expect("sound")
@@ -233,6 +233,11 @@ fn what_makes_no_sense_is_refused() {
     let law = Law::Acceleration { p: [f64::NAN; 6], d: [1.0; 6] };
     let tip = ur5.end_effector().expect("named");
     words(TaskSpace::new(&ur5, hold(), tip, law, Gains::uniform(6, 1.0, 1.0)).err(), "the task's K_p");
+    let bars = mozzi::testing::four_bar();
+    let foot = ContactPoint::new("foot", bars.frame("coupler").expect("a link"), Vec3::zero(), 0.7);
+    let stands =
+        Standing::new(&bars, Hold::new(&[0.0; 3], 3), Gains::uniform(3, 1.0, 1.0), vec![foot], SE3::identity());
+    words(stands.err(), "a robot on standing feet is with 5 constraint rows, expected a robot without constraints");
     // a reference of another robot
     let mut control = PdGravity::new(&ur5, Hold::new(&[0.0; 7], 7), Gains::uniform(6, 1.0, 1.0)).expect("fine");
     let error = control.torque(0.0, &[0.0; 6], &[0.0; 6], &mut [0.0; 6]).expect_err("seven");

@@ -104,7 +104,7 @@ impl<'m> InverseKinematics<'m> {
     /// For this frame, with the default [`Options`].
     ///
     /// # Errors
-    /// [`mozzi::Error::BadArgument`] for a frame of another model.
+    /// [`mozzi::Error::BadArgument`] for a frame of another model, or a robot with constraints.
     pub fn new(model: &'m Model, frame: FrameId) -> Result<Self, Error> {
         Self::with_options(model, frame, Options::default())
     }
@@ -112,9 +112,11 @@ impl<'m> InverseKinematics<'m> {
     /// For this frame.
     ///
     /// # Errors
-    /// [`mozzi::Error::BadArgument`] for a frame of another model, or options outside their domain.
+    /// [`mozzi::Error::BadArgument`] for a frame of another model, a robot with constraints, or options outside their
+    /// domain.
     pub fn with_options(model: &'m Model, frame: FrameId, options: Options) -> Result<Self, Error> {
         model.check_frame(frame)?;
+        check_open(model, "a robot under inverse kinematics")?; // φ = 0 is not among the equations
         options.check()?;
         let mut bounds = Bounds::of(model);
         if !options.limits {
@@ -131,8 +133,7 @@ impl<'m> InverseKinematics<'m> {
     /// Positions that reach the goal, from a guess and, if that fails, from random ones. An iteration costs O(n).
     ///
     /// # Errors
-    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for an invalid guess or goal, or
-    /// a robot with constraints.
+    /// [`Error::NotReached`] with the best that was found; [`Error::Model`] for an invalid guess or goal.
     pub fn solve(&mut self, goal: Goal, guess: &[f64]) -> Result<Solution, Error> {
         self.solve_with(goal, guess, &Secondary::None)
     }
@@ -143,8 +144,6 @@ impl<'m> InverseKinematics<'m> {
     /// # Errors
     /// As [`solve`](Self::solve).
     pub fn solve_with(&mut self, goal: Goal, guess: &[f64], secondary: &Secondary) -> Result<Solution, Error> {
-        // φ = 0 is not among the equations
-        check_open(self.model, "a robot under inverse kinematics")?;
         let mut theta = guess.to_vec();
         let Found { is_reached, residual, starts, iterations } = self.search(goal, secondary, &mut theta)?;
         if is_reached {

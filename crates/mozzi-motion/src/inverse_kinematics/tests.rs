@@ -314,4 +314,7 @@ fn what_makes_no_sense_is_refused() {
     assert!(bad(Options { angle: 0.0, ..Options::default() }).contains("angle is 0"));
     let other = robot("panda", "panda_rightfinger").1;
     assert!(InverseKinematics::new(&robot("two_link_planar", "tip").0, other).is_err());
+    let bars = mozzi::testing::four_bar();
+    let error = InverseKinematics::new(&bars, bars.frame("coupler").expect("a link")).expect_err("its loop would open");
+    assert!(error.to_string().contains("with 5 constraint rows, expected a robot without constraints"), "{error}");
 }

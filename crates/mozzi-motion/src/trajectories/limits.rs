@@ -4,6 +4,11 @@ use crate::Error;
 use crate::error::check;
 use mozzi::Model;
 
+/// Largest excess over a limit, relative to it.
+const EXCESS: f64 = 1e-9;
+/// How often limits that are exceeded between the samples are drawn in: two or three times are enough.
+pub(super) const CORRECTIONS: usize = 20;
+
 /// Limits of each of the n velocities, ∞ if there is none. They hold in both directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
@@ -42,6 +47,18 @@ impl Limits {
         limits
     }
 
+    /// Draws in each limit by as much as it is exceeded, from the largest used fractions of the limits of velocity,
+    /// acceleration and torque; false if none is exceeded.
+    pub(super) fn draw_in(&mut self, shares: &[Vec<f64>; 3]) -> bool {
+        if shares.iter().flatten().all(|&share| share <= 1.0 + EXCESS) {
+            return false;
+        }
+        for (list, shares) in [&mut self.velocity, &mut self.acceleration, &mut self.torque].into_iter().zip(shares) {
+            list.iter_mut().zip(shares).for_each(|(limit, share)| *limit /= share.max(1.0));
+        }
+        true
+    }
+
     pub(super) fn check(&self, model: &Model) -> Result<(), Error> {
         for (what, list) in [
             ("a velocity limit", &self.velocity),
@@ -58,4 +75,10 @@ impl Limits {
         }
         Ok(())
     }
+}
+
+/// The error of limits that stay exceeded between the samples.
+pub(super) fn exceeded(what: &'static str, samples: usize) -> Error {
+    let found = format!("{samples}, between which limits are exceeded");
+    mozzi::Error::BadArgument { what, found, expected: "more" }.into()
 }

@@ -1,17 +1,13 @@
 //! The shortest duration of a given shape of s(t) under limits.
 
 use super::demands::{Demand, demands_of_a_motion};
-use super::limits::Limits;
+use super::limits::{CORRECTIONS, Limits, exceeded};
 use super::path::Path;
 use super::profile::{Profile, Progress};
 use crate::Error;
 use crate::error::{check, check_driven, check_open};
 use mozzi::Model;
 
-/// How often limits that are exceeded between the samples are tightened.
-const CORRECTIONS: usize = 4;
-/// Largest excess over a limit, relative to it.
-const EXCESS: f64 = 1e-9;
 /// More samples are refused: each takes 600 bytes.
 const MOST: usize = 1_000_000;
 
@@ -21,7 +17,7 @@ const MOST: usize = 1_000_000;
 ///
 /// # Errors
 /// [`Error::TooWeak`] if a torque limit cannot hold the robot; [`Error::Unlimited`] if nothing is limited;
-/// [`mozzi::Error::BadArgument`], also for a path along which nothing moves.
+/// [`mozzi::Error::BadArgument`], also for a path along which nothing moves, and for too few samples.
 pub fn stretched(
     model: &Model,
     path: &impl Path,
@@ -36,19 +32,14 @@ pub fn stretched(
     let places = places(profile, &path.knots(), samples);
     let demands = demands_of_a_motion(model, path, &places.iter().map(|place| place.now.s).collect::<Vec<_>>())?;
     let sampled = Sampled { demands, places };
-    let (mut drawn_in, mut y) = (limits.clone(), f64::NAN);
+    let mut drawn_in = limits.clone();
     for _ in 0..CORRECTIONS {
-        y = sampled.fastest(model, &drawn_in)?;
-        let peaks = sampled.peaks(y, limits);
-        if peaks.iter().flatten().all(|&share| share <= 1.0 + EXCESS) {
-            break;
-        }
-        let Limits { velocity, acceleration, torque } = &mut drawn_in;
-        for (list, shares) in [velocity, acceleration, torque].into_iter().zip(&peaks) {
-            list.iter_mut().zip(shares).for_each(|(limit, share)| *limit /= share.max(1.0));
+        let y = sampled.fastest(model, &drawn_in)?;
+        if !drawn_in.draw_in(&sampled.peaks(y, limits)) {
+            return profile.in_time(profile.duration() / y);
         }
     }
-    profile.in_time(profile.duration() / y)
+    Err(exceeded("the number of samples", samples))
 }
 
 /// A moment of a motion.

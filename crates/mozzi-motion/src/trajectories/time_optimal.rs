@@ -9,7 +9,7 @@
 //! the largest u in each step. Limits hold at both ends of each interval.
 
 use super::demands::{Demand, demands, demands_of_a_motion};
-use super::limits::Limits;
+use super::limits::{CORRECTIONS, Limits, exceeded};
 use super::linear_program::{HalfPlane, maximize};
 use super::path::Path;
 use super::profile::Profile;
@@ -21,10 +21,8 @@ use mozzi::Model;
 const UNBOUNDED: f64 = 1e12;
 /// Linearisations of viscous friction.
 const ROUNDS: usize = 4;
-/// Points within each interval at which limits are checked, and the number of times that limits exceeded there are
-/// tightened.
+/// Points within each interval at which limits are checked.
 const BETWEEN: usize = 15;
-const CORRECTIONS: usize = 3;
 
 /// More intervals are refused: each takes 10 kB.
 const MOST: usize = 100_000;
@@ -36,7 +34,8 @@ const MOST: usize = 100_000;
 ///
 /// # Errors
 /// [`Error::TooWeak`] if a torque limit cannot hold the robot, or move it along the path; [`Error::Unlimited`] if no
-/// limit applies on some part of the path; [`mozzi::Error::BadArgument`], also for a path along which nothing moves.
+/// limit applies on some part of the path; [`mozzi::Error::BadArgument`], also for a path along which nothing moves,
+/// and for too few intervals.
 pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals: usize) -> Result<Profile, Error> {
     limits.check(model)?;
     check((2..=MOST).contains(&intervals), "the number of intervals", intervals, "2 to 100,000")?;
@@ -50,16 +49,11 @@ pub fn time_optimal(model: &Model, path: &impl Path, limits: &Limits, intervals:
     let mut drawn_in = limits.clone();
     for _ in 0..CORRECTIONS {
         let speeds = reachable(model, &s, &grid, &drawn_in)?;
-        let passed = shares(&s, &speeds, &inside, limits);
-        if passed.iter().flatten().all(|&share| share <= 1.0 + 1e-9) {
+        if !drawn_in.draw_in(&shares(&s, &speeds, &inside, limits)) {
             return Ok(Profile::of_speeds(&s, &speeds));
         }
-        let Limits { velocity, acceleration, torque } = &mut drawn_in;
-        for (list, shares) in [velocity, acceleration, torque].into_iter().zip(&passed) {
-            list.iter_mut().zip(shares).for_each(|(limit, share)| *limit /= share.max(1.0));
-        }
     }
-    Ok(Profile::of_speeds(&s, &reachable(model, &s, &grid, &drawn_in)?))
+    Err(exceeded("the number of intervals", intervals))
 }
 
 /// The largest used fractions of the limits of velocity, acceleration and torque at points between those of the grid,

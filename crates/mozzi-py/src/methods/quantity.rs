@@ -10,7 +10,7 @@ use mozzi::quantities::{LIST, Of, Query};
 use mozzi::{FrameId, TaskFrame, Vec3};
 use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyString, PyTuple};
+use pyo3::types::{PyBool, PyString, PyTuple};
 use std::sync::LazyLock;
 
 static SIGNATURES: LazyLock<Vec<Signature>> = LazyLock::new(|| LIST.iter().map(Signature::new).collect());
@@ -76,10 +76,14 @@ fn text<'a>(given: &'a Arguments, slot: Slot) -> PyResult<Option<&'a str>> {
 /// Row numbers of a task.
 pub fn rows(given: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
     let kind = given.get_type().name()?;
+    let wrong =
+        || PyTypeError::new_err(format!("rows is {given} ({kind}), expected a sequence of row numbers from 0 to 5"));
+    // True and False would be rows 1 and 0
+    if given.try_iter().is_ok_and(|items| items.flatten().any(|item| item.is_instance_of::<PyBool>())) {
+        return Err(wrong());
+    }
     given.extract().map_err(|error: PyErr| match error.is_instance_of::<PyException>(given.py()) {
-        true => {
-            PyTypeError::new_err(format!("rows is {given} ({kind}), expected a sequence of row numbers from 0 to 5"))
-        }
+        true => wrong(),
         false => error,
     })
 }

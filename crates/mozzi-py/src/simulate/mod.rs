@@ -246,7 +246,7 @@ impl PyModel {
         if !watched.is_empty() {
             return Err(PyValueError::new_err("until or events is given, expected None of many starts"));
         }
-        let is_dry = slip_speed.is_none() && model.joints().any(|joint| joint.friction != 0.0);
+        let is_dry = slip_speed.is_none() && model.has_dry_friction();
         let is_alone = given.iter().any(Option::is_some)
             || slip_speed.is_some()
             || joint_limits == Policy::Respect

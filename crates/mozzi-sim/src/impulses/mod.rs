@@ -18,7 +18,7 @@ use alloc::vec::Vec;
 use mozzi::linalg::Vec3;
 use mozzi::model::{Bounds, Model};
 use mozzi::scalar::Scalar;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use near::Cloud;
 use rows::Touching;
 
@@ -97,11 +97,29 @@ pub(crate) struct Solved {
 
 /// Whether a contact slides before and after the step in about the same direction. Its friction is then opposite to the
 /// mean of its velocities, which is of second order; only the direction counts, so the mean's law is that of b_t + u_t.
-fn slides_throughout(law: Law, first: usize, p: &DVector<f64>, before: &DVector<f64>, after: &DVector<f64>) -> bool {
-    let Law::Contact { .. } = law else { return false };
+/// What is left of the velocity of a contact that sticks is rounding, and has no direction.
+fn slides_throughout(
+    law: Law,
+    first: usize,
+    G: &DMatrix<f64>,
+    p: &DVector<f64>,
+    [before, after]: [&DVector<f64>; 2],
+) -> bool {
     let product = |a: &DVector<f64>, b: &DVector<f64>| a[first + 1] * b[first + 1] + a[first + 2] * b[first + 2];
+    if !matches!(law, Law::Contact { .. }) || is_inside(law, first, G, p, after) {
+        return false;
+    }
     let (squares, along) = (product(before, before) * product(after, after), product(before, after));
     p[first] > 0.0 && squares > 1e-32 && along > 0.0 && along * along > 0.25 * squares
+}
+
+/// True if p is inside its friction cone, so that the contact sticks; always false for dry friction and stops.
+fn is_inside(law: Law, first: usize, G: &DMatrix<f64>, p: &DVector<f64>, u: &DVector<f64>) -> bool {
+    let Law::Contact { mu } = law else { return false };
+    let g = G[(first + 1, first + 1)].max(f64::MIN_POSITIVE);
+    let [x, y] = [1, 2].map(|k| p[first + k] - u[first + k] / g);
+    let radius = mu * p[first];
+    x * x + y * y < radius * radius
 }
 
 /// ‖u_t‖ of a contact.
@@ -124,13 +142,9 @@ impl Solved {
         [-0.5 * self.p.dot(&twice), self.p.dot(&system.w)]
     }
 
-    /// True if p is inside its friction cone, so that the contact sticks; always false for dry friction and stops.
+    /// See [`is_inside`].
     pub fn sticks(&self, system: &System, first: usize, law: Law) -> bool {
-        let Law::Contact { mu } = law else { return false };
-        let g = system.G[(first + 1, first + 1)].max(f64::MIN_POSITIVE);
-        let [x, y] = [1, 2].map(|k| self.p[first + k] - self.u[first + k] / g);
-        let radius = mu * self.p[first];
-        x * x + y * y < radius * radius
+        is_inside(law, first, &system.G, &self.p, &self.u)
     }
 }
 
@@ -189,7 +203,7 @@ impl<'r> Impulses<'r> {
 
     /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
     /// Contacts that slide throughout have their friction at the middle of the step: those of the last solution, or
-    /// more and more of them.
+    /// more and more of them, without those that do not slide throughout if it is there.
     pub fn solve(
         &mut self,
         system: &mut System,
@@ -212,7 +226,7 @@ impl<'r> Impulses<'r> {
         let size = b.amax().max(LEAST);
         let tolerances = TOLERANCES.map(|tolerance| tolerance * size);
         let System { rows, shifted, solver, G, .. } = system;
-        let (mut p, mut shifts) = (guess.clone(), 0);
+        let (mut p, mut shifts, mut barred) = (guess.clone(), 0, alloc::vec![false; rows.len()]);
         loop {
             let mut of_middle = b.clone();
             for (&(_, first, law), _) in rows.iter().zip(&*shifted).filter(|(_, shifted)| **shifted) {
@@ -222,16 +236,17 @@ impl<'r> Impulses<'r> {
             self.account.add(&found);
             let mut u = free.clone();
             u.gemv(1.0, G, &found.p, 1.0);
-            let slides = |&(_, first, law): &(Key, usize, Law)| slides_throughout(law, first, &found.p, before, &u);
-            let is_stale = shifts == 0 && rows.iter().zip(&*shifted).any(|(row, shifted)| *shifted && !slides(row));
-            if is_stale {
-                shifted.fill(false);
-            }
-            let mut changes = is_stale;
-            if !is_stale && shifts < SHIFTS {
-                for (row, shifted) in rows.iter().zip(&mut *shifted) {
-                    let begins = !*shifted && slides(row);
-                    (*shifted, changes) = (*shifted || begins, changes || begins);
+            let slides: Vec<bool> =
+                rows.iter().map(|&(_, first, law)| slides_throughout(law, first, G, &found.p, [before, &u])).collect();
+            let mut changes = (0..rows.len()).any(|k| shifted[k] && !slides[k]);
+            if changes && shifts == 0 {
+                shifted.fill(false); // those of another solution
+            } else {
+                for k in 0..rows.len() {
+                    barred[k] |= shifted[k] && !slides[k];
+                    let begins = !shifted[k] && slides[k] && !barred[k] && shifts < SHIFTS;
+                    shifted[k] = !barred[k] && (shifted[k] || begins);
+                    changes |= begins;
                 }
             }
             if !changes {
@@ -350,19 +365,23 @@ impl<'r> Impulses<'r> {
 
 #[cfg(test)]
 mod tests {
-    use super::{DVector, Law, slides_throughout};
+    use super::{DMatrix, DVector, Law, slides_throughout};
 
     #[test]
     fn a_contact_slides_on_in_any_direction_of_the_plane() {
-        let (law, pressed) = (Law::Contact { mu: 0.5 }, DVector::from_vec(vec![1.0, 0.0, 0.0]));
-        let at = |x: f64, y: f64| DVector::from_vec(vec![0.0, x, y]);
-        let slides = |before, after| slides_throughout(law, 0, &pressed, &before, &after);
+        let (law, G, at) =
+            (Law::Contact { mu: 0.5 }, DMatrix::identity(3, 3), |x: f64, y: f64| DVector::from_vec(vec![0.0, x, y]));
+        let slides = |before, after: DVector<f64>| {
+            let p = DVector::from_vec(vec![1.0, 0.0, 0.0]) - &after * (0.5 / after.norm().max(1.0));
+            slides_throughout(law, 0, &G, &p, [&before, &after])
+        };
         // within 60°
         assert!(slides(at(1.0, 0.0), at(2.0, 0.1)) && slides(at(0.0, 1.0), at(0.1, 2.0)));
         assert!(slides(at(1.0, 0.0), at(1.0, 1.7)) && !slides(at(1.0, 0.0), at(1.0, 1.8)));
         assert!(!slides(at(0.0, 1.0), at(0.0, -1.0)) && !slides(at(0.0, 1.0), at(0.0, 0.0)));
-        let lifted = DVector::zeros(3);
-        assert!(!slides_throughout(law, 0, &lifted, &at(1.0, 0.0), &at(1.0, 0.0)));
-        assert!(!slides_throughout(Law::Stop, 0, &pressed, &at(1.0, 0.0), &at(1.0, 0.0)));
+        assert!(!slides(at(1.0, 0.0), at(1e-16, 0.0)), "rounding of a contact that sticks");
+        let (lifted, pressed) = (DVector::zeros(3), DVector::from_vec(vec![1.0, 0.0, 0.0]));
+        assert!(!slides_throughout(law, 0, &G, &lifted, [&at(1.0, 0.0), &at(1.0, 0.0)]));
+        assert!(!slides_throughout(Law::Stop, 0, &G, &pressed, [&at(1.0, 0.0), &at(1.0, 0.0)]));
     }
 }

@@ -195,7 +195,7 @@ impl<'m> Rollout<'m> {
         Ok(self)
     }
 
-    /// Gradients by the parameters, too.
+    /// Also computes the gradient with respect to the parameters.
     pub fn with_parameter_gradient(mut self) -> Self {
         self.wants_parameters = true;
         self

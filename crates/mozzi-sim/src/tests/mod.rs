@@ -5,6 +5,7 @@ mod balls;
 mod constraints;
 mod courses;
 mod free_base;
+mod moreau;
 pub mod robots;
 mod simulate;
 mod springs;

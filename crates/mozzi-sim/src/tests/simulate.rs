@@ -108,6 +108,19 @@ fn what_makes_no_sense_is_refused() {
     assert!(simulate(&robot, &[0.0; 2], &[0.0; 2], applied(other, |_, _, _| Wrench::zero()), &fine).is_err());
 }
 
+/// The tolerance of positions is absolute: a pendulum that has turned 10⁴ times swings like one that has not.
+#[test]
+fn turns_do_not_loosen_the_tolerance() {
+    let options = Options { method: Method::DormandPrince { tolerance: 1e-8 }, ..Options::new(10.0, 1) };
+    let turns = 1e4 * 2.0 * PI;
+    let swing = |start: f64| {
+        let motion = simulate(&pendulum(0.0, 0.0), &[start], &[0.0], Zero, &options).expect("a motion");
+        motion.last().theta[0]
+    };
+    let apart = (swing(1.0 + turns) - turns - swing(1.0)).abs();
+    assert!(apart < 1e-6, "{apart:e}");
+}
+
 #[test]
 fn a_blow_up_is_named() {
     // a spring too stiff for the step: explicit Euler multiplies its amplitude by 300 a step
@@ -118,6 +131,17 @@ fn a_blow_up_is_named() {
     assert!(joint == "pivot" && value.abs() > 1e150 && *step_size == 0.01);
     assert!(*step > 50 && *step < 75 && (time - *step as f64 * 0.01).abs() < 1e-9, "{error}");
     assert!(error.to_string().contains("a smaller step may help"));
+}
+
+#[test]
+fn a_position_that_is_nowhere_is_named() {
+    let robot = testing::floating_tree(1, 3, 0);
+    for (index, expected) in [(6, "joint `base.z`"), (robot.nq() - 1, "joint `joint")] {
+        let mut theta = testing::state(&robot, 1)[0].clone();
+        theta[index] = 1e151;
+        let error = simulate(&robot, &theta, &vec![0.0; robot.n()], Zero, &Options::new(1.0, 10)).expect_err("nowhere");
+        assert!(error.to_string().contains(&format!("theta of {expected}")), "{error}");
+    }
 }
 
 #[test]

@@ -124,6 +124,28 @@ fn a_ball_begins_to_roll() {
     }
 }
 
+/// A ball that lands sideways and spinning loses the velocity of its lowest point at once where friction suffices: it
+/// never slides on, nor back.
+#[test]
+fn a_ball_that_lands_rolls_at_once() {
+    let model = ball();
+    for k in 0..40 {
+        let part = |a: f64| (a * f64::from(k)).sin();
+        let (w, v) = ([5.0 * part(0.7), 5.0 * part(1.3), 5.0 * part(1.9)], [part(2.3), part(3.1), 0.0]);
+        let start = [[0.0, 0.0, RADIUS + 0.1], w, v];
+        let run = rolling(&model, Plane::ground(), 0.7, 0.0, start, by(Method::MoreauJean, 0.2, 1e-3));
+        let slip = [v[0] - RADIUS * w[1], v[1] + RADIUS * w[0]];
+        let rows: Vec<_> = run.motion.samples().collect();
+        for (before, after) in rows[150..].iter().zip(&rows[151..]) {
+            for i in 0..2 {
+                let rate = (after.theta[4 + i] - before.theta[4 + i]) / 1e-3;
+                let expected = v[i] - 2.0 / 7.0 * slip[i];
+                assert!((rate - expected).abs() < 1e-9, "{k}: {rate} {expected} at {}", after.t);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_wheel_rolls_down_inside_the_cone_and_slides_outside() {
     // a thin wheel, I = ½mr² about its axis y, on a slope: it rolls with ⅔ g sin α as long as tan α ≤ 3μ

@@ -79,3 +79,12 @@ fn limits_that_are_respected_make_the_method_moreaus() {
         }
     }
 }
+
+#[test]
+fn a_start_beyond_a_limit_is_reported_at_once() {
+    let options = by(Method::RungeKutta4, 0.1, 1e-3);
+    let model = block(2.0, 0.0, 0.0, Some([-1.0, 0.3]));
+    let run = Simulation::new(options).run(&model, &[0.5], &[0.0], Zero).expect("a motion");
+    let stop = &run.stops[0];
+    assert!(stop.first == 0.0 && stop.limit == 0.3 && (stop.beyond - 0.2).abs() < 1e-12, "{stop:?}");
+}

@@ -29,7 +29,8 @@ pub fn estimates(
             let old = robot.inertials.get(name).map(|inertial| (inertial, inertial.inertia(&inertial.numbers)));
             let given = old.as_ref().map(|(_, G)| G.mass).filter(|mass| *mass > 0.0);
             let mass = given.unwrap_or(density * solid.moments.size);
-            let new = SpatialInertia::new(mass, solid.moments.center, solid.moments.I * (mass / solid.moments.size));
+            let (center, I) = without_noise(solid.moments.center, solid.moments.I * (1.0 / solid.moments.size));
+            let new = SpatialInertia::new(mass, center, I * mass);
             let (editor, change) = match &old {
                 Some((inertial, _)) => inertial.write(&inertial.numbers_of(new)),
                 None => (inserted(link, new), format!("an <inertial> of {} kg is added", shortest(mass))),
@@ -46,6 +47,16 @@ pub fn estimates(
         });
         all.collect()
     })
+}
+
+/// A centre, and the moments about it per mass, with 0 in place of what the sums over a symmetric hull leave of it.
+fn without_noise(center: Vec3, I: Sym3) -> (Vec3, Sym3) {
+    let square = 1e-13 * I.trace();
+    let kept = |x: f64, noise: f64| if x.abs() <= noise { 0.0 } else { x };
+    let product = |x| kept(x, square);
+    let length = 1e-13 * I.trace().sqrt();
+    let center = Vec3(center.0.map(|x| kept(x, length)));
+    (center, Sym3 { xy: product(I.xy), xz: product(I.xz), yz: product(I.yz), ..I })
 }
 
 fn inserted<'a>(link: Tag<'a>, G: SpatialInertia) -> Editor<'a> {

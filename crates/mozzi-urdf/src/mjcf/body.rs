@@ -5,6 +5,7 @@ use super::class::Class;
 use super::compiler::FromGeoms;
 use super::contents::{Around, Contents, Inside};
 use super::geom::Mass;
+use super::joint::check_joints;
 use super::orientation::{pose, to_z, unit};
 use super::tree::{Link, Name, Site};
 use super::{attributes::Item, vocabulary};
@@ -73,6 +74,7 @@ impl<'a> Model<'a> {
             place.set("name", value.span);
         }
         let is_free = self.free(&contents, carrier.link, &name.shown(), origin, cx);
+        check_joints(&contents.joints, cx);
         let is_static = carrier.is_static && contents.joints.is_empty() && !is_free;
         let inertia = self.inertia(&element, &contents, own.p, &mut place, is_static, cx);
         // joints act one after the other, the first at the parent; between them are massless links
@@ -158,6 +160,11 @@ impl<'a> Model<'a> {
             let subject = named.unwrap_or_else(|| format!("{}: geom", element.subject));
             let item = Item { element: geom.item.element.called(subject), ..geom.item.clone() };
             self.check_geom(&item.element, cx);
+            if !is_static && item.value("type").is_some_and(|kind| kind.text == "plane") {
+                let message = "type: is plane, expected another shape: joints move its body";
+                let help = "MuJoCo refuses it, too; a plane belongs in the world, or in a body that does not move";
+                cx.findings.add(item.error("unsupported_element", "type", message).help(help));
+            }
             if is_given {
                 continue;
             }

@@ -142,15 +142,16 @@ pub(crate) const CODES: [Entry; 43] = [
         "remove it, and write the resulting numbers instead"),
     ("unsupported_element",
         "An element requires something that mozzi does not compute or expand: flexible bodies, or copies of parts \
-         of the tree.",
+         of the tree; or it is a plane that joints move, which MuJoCo refuses, too.",
         "let MuJoCo expand or remove it, and save the model from there"),
     ("unsupported_equality",
         "An equality of spatial tendons or flexible bodies. Equalities of joints, bodies and fixed tendons are computed; \
          ignoring others would give wrong results, so the file is refused.",
         "remove it, or set active=\"false\", if you want to compute the robot without it"),
     ("unsupported_joint",
-        "A free joint is inside the tree, or its body has other joints, too. MuJoCo refuses it, too.",
-        "a ball and three slides in one body move like a free joint"),
+        "A free joint is inside the tree, or its body has other joints, too; or a ball is followed by a ball or a hinge; \
+         or the joints of one body have more than six degrees of freedom. MuJoCo refuses these, too.",
+        "put joints into bodies of their own; a ball and three slides in one body move like a free joint"),
     ("unsupported_tendon",
         "A tendon has a force of its own, or is spatial and has an armature: its effect then varies \
          with the joints. The armature of a fixed tendon is computed, as a rotor that several joints turn.",

@@ -17,6 +17,7 @@ impl Model<'_> {
     pub fn inertial(&self, item: &Item, place: &mut Place, cx: &mut Context) -> (SpatialInertia, Vec3) {
         item.element.check_attributes(&vocabulary::INERTIAL, cx);
         item.element.check_children(&vocabulary::INERTIAL, cx);
+        item.element.required("pos", cx);
         let T = pose(item, &self.compiler, cx);
         for (name, check) in [("mass", "mass"), ("diaginertia", "inertia"), ("fullinertia", "inertia")] {
             if let Some(value) = item.value(name) {

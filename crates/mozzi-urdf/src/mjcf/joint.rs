@@ -146,6 +146,25 @@ impl<'a> Model<'a> {
     }
 }
 
+/// Reports joints of one body that MuJoCo refuses: a turn after a ball, or more than six degrees of freedom.
+pub fn check_joints(joints: &[Inside], cx: &mut Context) {
+    let (mut degrees, mut has_ball) = (0, false);
+    for Inside { item, .. } in joints {
+        let kind = item.value("type").map_or("hinge", |kind| kind.text);
+        degrees += if kind == "ball" { 3 } else { 1 };
+        let why = if has_ball && kind != "slide" {
+            "is after a ball in the same body, expected a slide there"
+        } else if degrees > 6 {
+            "is one joint too many in its body, expected at most six degrees of freedom"
+        } else {
+            has_ball |= kind == "ball";
+            continue;
+        };
+        let help = "MuJoCo refuses it, too; put the joints into a body of its own between this one and its parent";
+        return cx.findings.add(item.error("unsupported_joint", "", why).help(help));
+    }
+}
+
 /// Whether the lower bound is not above the upper one; the reverse is reported.
 fn in_order(name: &str, [low, high]: [f64; 2], item: &Item, cx: &mut Context) -> bool {
     if low > high {

@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn what_changes_the_motion_comes_first_and_looks_are_counted() {
         let text = "<mujoco><option timestep='0.1' iterations='3'/><worldbody><light/><body name='b'>\
-             <joint axis='1 0 0' range='9 -9' margin='0'/><inertial mass='1' diaginertia='1 1 3'/>\
+             <joint axis='1 0 0' range='9 -9' margin='0'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 3'/>\
              <geom size='1' rgba='1 1 1 1' friction='1'/><body gravcomp='0.5'><geom size='1' rgba='0 0 0 1'/></body>\
              </body></worldbody><actuator/></mujoco>";
         let robot = parse("a.xml", text).expect("a model");

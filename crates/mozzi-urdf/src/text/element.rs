@@ -171,9 +171,10 @@ impl<'a> Element<'a> {
                 Finding::error("wrong_count", value.span.clone(), message).maybe_help(help)
             }
             NotNumbers::Word { span, word, why } => {
-                // the word's own place, unless an entity shifts the text after it
-                let is_raw = self.pages.text(&value.span) == Some(value.text) && !span.is_empty();
-                let at = if is_raw {
+                // the word's own place, unless an entity shifts the text after it; a line break is read as a space
+                let as_read = |byte| if matches!(byte, b'\n' | b'\t') { b' ' } else { byte };
+                let raw = self.pages.text(&value.span).unwrap_or_default();
+                let at = if raw.bytes().map(as_read).eq(value.text.bytes()) && !span.is_empty() {
                     value.span.start + span.start..value.span.start + span.end
                 } else {
                     value.span.clone()

@@ -156,7 +156,7 @@ const MJCF_WORDS: &[&str] = &[
     "<geom size='0.1 0.2 0.3'/>",
     "<geom type='box' size='1 1 1' mass='2'/>",
     "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>",
-    "<inertial mass='1' fullinertia='1 1 1 0 0 0'/>",
+    "<inertial pos='0 0 0' mass='1' fullinertia='1 1 1 0 0 0'/>",
     "<site name='s' fromto='0 0 0 0 0 1'/>",
     "<compiler settotalmass='3'/>",
     "<compiler angle='radian' eulerseq='XYZ'/>",

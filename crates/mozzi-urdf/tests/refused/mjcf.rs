@@ -26,6 +26,26 @@ fn what_has_no_place_is_refused_by_name() {
             "joint `j`: is a free joint inside the tree: in MJCF only a body of the world can be free",
         ),
         (
+            body!("<joint type='ball'/><§joint/><geom size='1'/>"),
+            "unsupported_joint",
+            "body `b`: joint: is after a ball in the same body, expected a slide there",
+        ),
+        (
+            body!("<joint/><joint/><joint/><joint/><joint/><joint/><§joint/><geom size='1'/>"),
+            "unsupported_joint",
+            "body `b`: joint: is one joint too many in its body, expected at most six degrees of freedom",
+        ),
+        (
+            body!("<joint/><geom size='1'/><geom type='§plane' size='1 1 1'/>"),
+            "unsupported_element",
+            "body `b`: geom: type: is plane, expected another shape: joints move its body",
+        ),
+        (
+            body!("<§inertial mass='1' diaginertia='1 1 1'/>"),
+            "missing_attribute",
+            "body `b`: inertial: has no attribute `pos`",
+        ),
+        (
             body!("<freejoint align='§true'/><geom size='1'/>"),
             "unsupported_attribute",
             "body `b`: freejoint: would be aligned with the body's inertia, which moves the body's frame",
@@ -201,12 +221,12 @@ fn words_and_numbers() {
             "body `b`: inertial: has no attribute `mass`",
         ),
         (
-            body!("<inertial mass='1' quat='§1 0 0 0' fullinertia='1 1 1 0 0 0'/>"),
+            body!("<inertial pos='0 0 0' mass='1' quat='§1 0 0 0' fullinertia='1 1 1 0 0 0'/>"),
             "several_orientations",
             "body `b`: inertial: has both fullinertia and quat, expected one of them",
         ),
         (
-            body!("<joint/><inertial mass='1' diaginertia='§1 -1 1'/>"),
+            body!("<joint/><inertial pos='0 0 0' mass='1' diaginertia='§1 -1 1'/>"),
             "indefinite_inertia",
             "link `b`: inertia: the smallest principal moment about the centre of mass is -1 kg m², expected at least 0",
         ),

@@ -54,7 +54,7 @@ fn what_is_left_out_is_said() {
             "link `b`: mass: joint `j` moves it, but it has no inertia: forward dynamics is undefined",
         ),
         (
-            body!("<joint/><inertial mass='1' diaginertia='§1 1 3'/>"),
+            body!("<joint/><inertial pos='0 0 0' mass='1' diaginertia='§1 1 3'/>"),
             "unphysical_inertia",
             "link `b`: inertia: the principal moments about the centre of mass, 1, 1 and 3 kg m², break the triangle inequality: the largest exceeds the sum of the others by 1",
         ),

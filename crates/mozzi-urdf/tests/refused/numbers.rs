@@ -23,6 +23,11 @@ fn no_numbers() {
         (mass("§one"), "not_a_number", "link `b`: inertial: mass: value: is `one`, expected a number"),
         (mass("§"), "not_a_number", "link `b`: inertial: mass: value: is empty, expected a number"),
         (mass("  §0x10"), "not_a_number", "link `b`: inertial: mass: value: is `0x10`, expected a number"),
+        (
+            origin("0\n0.1\t§x"), // read as spaces
+            "not_a_number",
+            "link `b`: inertial: origin: xyz: is `x`, expected a number",
+        ),
         (mass("§NaN"), "not_finite", "link `b`: inertial: mass: value: is `NaN`, expected a finite number"),
         (mass("§-inf"), "not_finite", "link `b`: inertial: mass: value: is `-inf`, expected a finite number"),
         (

@@ -83,15 +83,6 @@ impl Model<f64> {
         Err(Error::Unreachable { constraint: self.constraint_of_row(row), residual, what })
     }
 
-    /// Refuses rows that are not finite.
-    fn check_rows(&self, Rows { A, phi, .. }: &Rows) -> Result<(), Error> {
-        let is_finite = |row: &usize| phi[*row].is_finite() && A.row(*row).iter().all(|x| x.is_finite());
-        let Some(row) = (0..phi.len()).find(|row| !is_finite(row)) else { return Ok(()) };
-        let found = alloc::format!("one at which constraint `{}` is undefined", self.constraint_of_row(row));
-        let expected = "another: the axis of a wheel is not normal to its plane, and numbers are not too large";
-        Err(Error::BadArgument { what: "the position", found, expected })
-    }
-
     /// Closes the loops with all joints free, then brings those that are not free to the guess, in steps.
     fn close_along(&self, theta: &mut Vec<f64>, guess: &[f64], free: &[usize]) -> f64 {
         let all: Vec<usize> = (0..self.n()).collect();

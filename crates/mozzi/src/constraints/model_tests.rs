@@ -249,3 +249,17 @@ fn a_wheel_that_lies_flat_is_refused() {
         assert!(error.to_string().contains("constraint `rolls` is undefined"), "{error}");
     }
 }
+
+/// A decomposition of what is not a number would not end, or find no rank.
+#[test]
+fn constraints_at_no_position_are_refused() {
+    let (model, theta, dtheta) = closed_four_bar();
+    let (nowhere, environment) = ([f64::NAN, theta[1], theta[2]], model.environment());
+    for error in [
+        model.constraint_rank(&nowhere).expect_err("NaN"),
+        model.reduce(&nowhere, &dtheta, &["crank_pivot"], &environment).expect_err("NaN"),
+        model.reduce(&theta, &[f64::NAN; 3], &["crank_pivot"], &environment).expect_err("NaN"),
+    ] {
+        assert!(error.to_string().contains("constraint `loop` is undefined"), "{error}");
+    }
+}

@@ -23,14 +23,16 @@ impl Model<f64> {
     /// relative to the largest row of their own constraint. At a singular θ it is less than elsewhere.
     ///
     /// # Errors
-    /// [`Error::WrongLength`].
+    /// [`Error::WrongLength`]; [`Error::BadArgument`] if A is not finite.
     pub fn constraint_rank(&self, theta: &[f64]) -> Result<ConstraintRank, Error> {
         self.check_configuration(theta)?;
         let (rows, n) = (self.constraint_rows(), self.n());
         if rows == 0 || n == 0 {
             return Ok(ConstraintRank { rows, rank: 0, freedom: n, redundant: self.constraint_row_names().collect() });
         }
-        let mut A = self.constraint_rows_at(theta, &alloc::vec![0.0; n]).A;
+        let found = self.constraint_rows_at(theta, &alloc::vec![0.0; n]);
+        self.check_rows(&found)?;
+        let mut A = found.A;
         for tie in &self.ties.list {
             let mut own = A.rows_mut(tie.first, tie.kind.rows());
             let largest = own.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
@@ -39,11 +41,11 @@ impl Model<f64> {
             }
         }
         let qr = A.transpose().col_piv_qr();
+        let mut order = nalgebra::RowDVector::from_iterator(rows, 0..rows);
+        qr.p().permute_columns(&mut order);
         let R = qr.unpack_r();
         let largest = R[(0, 0)].abs();
         let rank = (0..R.nrows().min(R.ncols())).take_while(|&k| R[(k, k)].abs() > SINGULAR * largest).count();
-        let mut order = nalgebra::RowDVector::from_iterator(rows, 0..rows);
-        A.transpose().col_piv_qr().p().permute_columns(&mut order);
         let mut dependent: Vec<usize> = order.iter().skip(rank).copied().collect();
         dependent.sort_unstable();
         let names: Vec<String> = self.constraint_row_names().collect();

@@ -29,8 +29,8 @@ impl Model<f64> {
     /// The dynamics in the velocities of these joints, from which the constraints determine all others.
     ///
     /// # Errors
-    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::BadArgument`] if a joint is not determined by them, or
-    /// if they depend on each other.
+    /// [`Error::WrongLength`], [`Error::NoSuchJoint`]; [`Error::BadArgument`] if a joint is not determined by them, if
+    /// they depend on each other, or if the constraints are not finite.
     pub fn reduce(
         &self,
         theta: &[f64],
@@ -42,7 +42,9 @@ impl Model<f64> {
         let independent = self.velocities_of(independent)?;
         let n = self.n();
         let dependent: Vec<usize> = (0..n).filter(|j| !independent.contains(j)).collect();
-        let Rows { A, bias, .. } = self.constraint_rows_at(theta, dtheta);
+        let rows = self.constraint_rows_at(theta, dtheta);
+        self.check_rows(&rows)?;
+        let Rows { A, bias, .. } = rows;
         let (A_d, A_i) = (columns(&A, &dependent), columns(&A, &independent));
         self.check_determined(&A_d, &dependent)?;
         let mut N = DMatrix::zeros(n, independent.len());

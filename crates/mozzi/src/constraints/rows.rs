@@ -75,6 +75,16 @@ impl Model<f64> {
         Rows { A: DMatrix::from_row_slice(m, n, &A), bias: DVector::from_vec(bias), phi: DVector::from_vec(phi) }
     }
 
+    /// Refuses rows that are not finite: a decomposition of them would not end.
+    pub(crate) fn check_rows(&self, Rows { A, bias, phi }: &Rows) -> Result<(), Error> {
+        let is_finite =
+            |row: &usize| A.row(*row).iter().chain([&phi[*row], &bias[*row]]).all(|number| number.is_finite());
+        let Some(row) = (0..phi.len()).find(|row| !is_finite(row)) else { return Ok(()) };
+        let found = format!("one at which constraint `{}` is undefined", self.constraint_of_row(row));
+        let expected = "finite numbers that are not too large, and no wheel whose axis is normal to its plane";
+        Err(Error::BadArgument { what: "the state", found, expected })
+    }
+
     /// φ(θ), m numbers: see [`constraint_jacobian`]. Unlike there, what is open by a half turn is: 2 sin(α/2) times the
     /// axis also of a weld at α = π, and of the angle between the axes of a hinge that are more than 90° apart.
     ///

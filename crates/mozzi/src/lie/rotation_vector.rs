@@ -93,7 +93,7 @@ mod tests {
                 assert!(error <= 4.0 * f64::EPSILON * angle, "{angle}: {error:e}");
                 let inverse = SO3::left_jacobian_inverse(-found.phi);
                 let error = found.derivative() - inverse;
-                let error = error.x.max_abs().max(error.y.max_abs()).max(error.z.max_abs());
+                let error = error.max_abs();
                 assert!(error < 20.0 * f64::EPSILON, "{angle}: {error:e}");
             }
         }

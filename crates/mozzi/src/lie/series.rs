@@ -74,6 +74,7 @@ pub fn angle_over_sine<S: Real>(z: S, c: S) -> S {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scalar::Dual;
 
     #[test]
     fn limits_at_zero() {
@@ -83,6 +84,9 @@ mod tests {
             assert_eq!(sinc3(z), 1.0 / 6.0);
             assert_eq!(cotc(z), 1.0 / 12.0);
             assert_eq!(angle_over_sine(z, 1.0), 2.0);
+            // 2 atan(s/c)/s = 2/c − 2z/(3c³) + …
+            let slope = angle_over_sine(Dual { value: z, derivative: 1.0 }, Dual::constant(1.0)).derivative;
+            assert!((slope + 2.0 / 3.0).abs() < 1e-15, "{slope}");
         }
     }
 

@@ -99,8 +99,7 @@ impl SO3<f64> {
     /// # Errors
     /// When RᵀR = I and det R = 1 do not hold to 10⁻¹², [`InvalidRotation`] with the numbers: see [`SO3::nearest`].
     pub fn from_matrix(R: Mat3) -> Result<Self, InvalidRotation> {
-        let (error, tolerance, determinant) = (R.transpose() * R - Mat3::identity(), 1e-12, R.determinant());
-        let deviation = error.x.max_abs().max(error.y.max_abs()).max(error.z.max_abs());
+        let (deviation, tolerance, determinant) = (from_orthogonal(R), 1e-12, R.determinant());
         // written so that NaN is rejected
         if deviation <= tolerance && determinant > 0.0 {
             Ok(SO3(R))
@@ -129,8 +128,7 @@ impl SO3<f64> {
     pub fn nearest(B: Mat3) -> Result<(Self, f64), InvalidRotation> {
         let determinant = B.determinant();
         if !(0.5..=2.0).contains(&determinant) {
-            let deviation = (B.transpose() * B - Mat3::identity()).x.max_abs();
-            return Err(InvalidRotation { deviation, tolerance: 0.5, determinant });
+            return Err(InvalidRotation { deviation: from_orthogonal(B), tolerance: 0.5, determinant });
         }
         let mut R = B;
         for _ in 0..20 {
@@ -138,9 +136,13 @@ impl SO3<f64> {
             let cofactors = Mat3 { x: R.y.cross(R.z), y: R.z.cross(R.x), z: R.x.cross(R.y) };
             R = (R + cofactors * (1.0 / R.determinant())) * 0.5;
         }
-        let d = R - B;
-        Ok((SO3(R), d.x.max_abs().max(d.y.max_abs()).max(d.z.max_abs())))
+        Ok((SO3(R), (R - B).max_abs()))
     }
+}
+
+/// The largest entry of |BᵀB − I|.
+fn from_orthogonal(B: Mat3) -> f64 {
+    (B.transpose() * B - Mat3::identity()).max_abs()
 }
 
 impl<S: Real> SO3<S> {
@@ -257,6 +259,9 @@ mod tests {
         assert!(SO3::from_matrix(R.matrix()).is_ok() && distance < 1e-5);
         let nan = Mat3::identity() * f64::NAN;
         assert!(SO3::from_matrix(nan).is_err() && SO3::nearest(nan).is_err());
+        let long = Mat3::from_rows([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0]]);
+        let error = SO3::nearest(long).expect_err("det = 3");
+        assert_eq!((error.deviation, error.determinant), (8.0, 3.0));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! 3 × 3 matrices.
 
 use super::{Skew, Vec3, linear_space};
-use crate::scalar::Scalar;
+use crate::scalar::{Real, Scalar};
 use core::ops::Mul;
 
 /// A 3 × 3 matrix, as its three rows.
@@ -106,6 +106,13 @@ impl<S: Scalar> Mat3<S> {
     /// The determinant.
     pub fn determinant(self) -> S {
         self.x.dot(self.y.cross(self.z))
+    }
+}
+
+impl<S: Real> Mat3<S> {
+    /// The largest |entry|.
+    pub fn max_abs(self) -> S {
+        Vec3([self.x, self.y, self.z].map(Vec3::max_abs)).max_abs()
     }
 }
 

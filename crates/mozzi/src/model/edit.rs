@@ -168,14 +168,16 @@ impl Model<f64> {
     }
 
     /// The sub-chain from one link, which becomes the base (fixed, unless it was already a floating base), to another.
-    /// Branches off the path are removed, also from named states. Gravity keeps its coordinates: set it if the new base
-    /// is rotated.
+    /// Branches off the path are removed, also from named states. The end effector is the second frame. Gravity keeps
+    /// its coordinates: set it if the new base is rotated.
     ///
     /// # Errors
-    /// [`Error::BadArgument`] if `to` is not a descendant of `from`, or if a joint on the path is coupled to one off
-    /// the path by a mimic or a rotor.
+    /// [`Error::BadArgument`] if `to` is not a descendant of `from`; if a joint on the path is coupled to one off the
+    /// path by a mimic or a rotor; or if a constraint holds the path to what is off it, which {s} is unless `from` is
+    /// the base.
     pub fn sub_chain(&self, from: FrameId, to: FrameId) -> Result<Model, Error> {
         let whole = &self.described()?;
+        let end_effector = self.frame_name(to).to_string();
         let (from, to) = (self.link_of(from).0, self.link_of(to).0);
         let (mut links, mut joints, mut at) = (BTreeSet::from([to]), BTreeSet::new(), to);
         while at != from {
@@ -221,7 +223,8 @@ impl Model<f64> {
         let mut constraints = whole.constraints.clone();
         let links_of = |constraint: &Constraint| match &constraint.kind {
             ConstraintKind::Frames { a, b, .. } => {
-                [a, b].map(|anchor| anchor.frame.as_deref().is_none_or(|name| self.is_on(name, &links)))
+                let is_on = |name: &str| self.is_on(name, &links);
+                [a, b].map(|anchor| anchor.frame.as_deref().map_or(from == self.structure.base, is_on))
             }
             ConstraintKind::Joint { joints, source, .. } => {
                 let mut of = joints.iter().chain(source).map(|gear| on_path(&gear.joint));
@@ -231,7 +234,7 @@ impl Model<f64> {
         };
         constraints.retain(|one| links_of(one) != [false, false]);
         if let Some(one) = constraints.iter().find(|one| links_of(one) != [true, true]) {
-            let found = alloc::format!("`{}`, which holds a part off the path, too", one.name);
+            let found = alloc::format!("`{}`, which holds {{s}} or a part off the path, too", one.name);
             let expected = "one that holds parts on the path alone";
             return Err(Error::BadArgument { what: "a constraint of the sub-chain", found, expected });
         }
@@ -251,7 +254,7 @@ impl Model<f64> {
             frames: whole.frames.iter().filter(|frame| has(&frame.link)).cloned().collect::<Vec<_>>(),
             constraints,
             motors: whole.motors.as_ref().map(|motors| motors.iter().filter(|name| on_path(name)).cloned().collect()),
-            end_effector: Some(whole.links[to].name.clone()),
+            end_effector: Some(end_effector),
             gravity: whole.gravity,
             base,
             free_joint: whole.free_joint.clone(),
@@ -290,6 +293,9 @@ impl Description {
 
 #[cfg(test)]
 mod tests {
+    use super::ToString;
+    use crate::SE3;
+    use crate::model::description::NamedFrame;
     use crate::testing::{distance, state, tree};
 
     #[test]
@@ -312,6 +318,33 @@ mod tests {
     }
 
     #[test]
+    fn mimic_joints_of_a_locked_joint_stand_where_it_puts_them() {
+        let mut robot = tree(2, 7, 2).description().clone();
+        let source = robot.joints.iter_mut().find_map(|joint| {
+            let mimic = joint.mimic.as_mut()?;
+            mimic.offset = 0.7;
+            Some(mimic.joint.clone())
+        });
+        let source = source.expect("a mimic joint");
+        let model = robot.clone().build().expect("sound");
+        robot.motors = Some(model.joint_names().map(ToString::to_string).collect());
+        let model = robot.build().expect("sound");
+        let [theta, ..] = state(&model, 2);
+        let j = model.joint_names().position(|name| name == source).expect("an independent joint");
+        let locked = model.with_locked_joints(&[(&source, theta[j])]).expect("a joint");
+        let rest: Vec<f64> = theta.iter().enumerate().filter(|(k, _)| *k != j).map(|(_, &x)| x).collect();
+        for (frame, name) in model.frames() {
+            let there = locked.frame(name).expect("the same frames");
+            let apart = distance(
+                model.forward_kinematics(&theta, frame).expect("lengths"),
+                locked.forward_kinematics(&rest, there).expect("lengths"),
+            );
+            assert!(apart < 1e-13, "{name}: {apart}");
+        }
+        assert_eq!(locked.motors().len(), model.motors().len() - 1);
+    }
+
+    #[test]
     fn a_sub_chain_moves_as_in_the_whole() {
         let model = tree(11, 9, 0);
         let (base, tip) = (model.frame("link0").expect("base"), model.frame("link9").expect("a link"));
@@ -327,5 +360,18 @@ mod tests {
         );
         assert!(distance(whole, part) < 1e-14);
         assert!(model.sub_chain(tip, base).is_err());
+    }
+
+    #[test]
+    fn a_sub_chain_ends_in_the_frame_that_is_named() {
+        let mut robot = tree(11, 9, 0).description().clone();
+        let T = SE3::translation([0.1, 0.2, 0.3]);
+        robot.frames.push(NamedFrame { name: "tool".into(), link: "link9".into(), T });
+        let model = robot.build().expect("sound");
+        let [base, link, tool] = ["link0", "link9", "tool"].map(|name| model.frame(name).expect("a frame"));
+        let part = model.sub_chain(base, tool).expect("a path");
+        assert_eq!(part.frame_name(part.end_effector().expect("named")), "tool");
+        let part = model.sub_chain(base, link).expect("a path");
+        assert_eq!(part.frame_name(part.end_effector().expect("named")), "link9");
     }
 }

@@ -156,9 +156,11 @@ impl fmt::Display for Error {
             ),
             Error::SingularTask { singular_values, tolerance, theta } => write!(
                 f,
-                "the task is singular at θ = {}: the singular values of its Jacobian are {}, the smallest below {tolerance:.1e}",
+                "the task is singular at θ = {}: the singular values of its Jacobian are {}, the smallest {:.1e}, below \
+                 {tolerance:.1e}",
                 short(theta),
-                short(singular_values)
+                short(singular_values),
+                singular_values.last().copied().unwrap_or_default()
             ),
             Error::NoMass { mass } => write!(f, "the robot's total mass is {mass} kg; the centre of mass is undefined"),
             Error::BadArgument { what, found, expected } => write!(f, "{what} is {found}, expected {expected}"),

@@ -320,3 +320,10 @@ impl<C: Scalar> Model<C> {
         }
     }
 }
+
+impl Model {
+    /// True if dry friction acts on any joint, mimic joints included.
+    pub fn has_dry_friction(&self) -> bool {
+        self.friction.iter().any(|&friction| friction != 0.0)
+    }
+}

@@ -243,7 +243,7 @@ mod tests {
         let first = model.joint_names().next().expect("a joint").to_string();
         assert_eq!(
             of_home(&|state| state.joints.push(state.joints[0].clone())),
-            format!("repeated_joint: state `home`: joints: `{first}` stands there twice, expected once")
+            format!("repeated_joint: state `home`: joints: names `{first}` twice, expected once")
         );
         assert!(of_home(&|state| state.joints[0].positions.push(0.0)).contains("numbers, expected"));
         assert!(

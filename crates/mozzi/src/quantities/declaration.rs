@@ -81,6 +81,10 @@ impl Declaration {
     pub(crate) const fn with_first_output(self, first_output: usize) -> Self {
         Declaration { first_output, ..self }
     }
+    /// True if it refers to a frame {b}.
+    pub fn needs_frame(&self) -> bool {
+        matches!(self.of, Of::Frame | Of::Task)
+    }
     /// The kernel's output that is this quantity's first one.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn first_output(&self) -> usize {

@@ -175,11 +175,12 @@ mod tests {
     #[test]
     #[allow(clippy::type_complexity)] // a table of functions
     fn every_function_has_its_derivative() {
-        let functions: [(&str, fn(Dual) -> Dual); 6] = [
+        let functions: [(&str, fn(Dual) -> Dual); 7] = [
             ("sin", |x| x.sin_cos().0),
             ("cos", |x| x.sin_cos().1),
             ("sqrt", Scalar::sqrt),
             ("tanh", Scalar::tanh),
+            ("abs", |x| Real::abs(Dual::from_f64(0.3) - x)),
             ("atan2", |x| (x * x).atan2(Dual::from_f64(0.3) - x)),
             ("quotient", |x| (x - Dual::from_f64(2.0)) / (x * x + Dual::one())),
         ];

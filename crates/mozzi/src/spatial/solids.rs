@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn against_the_integrals() {
         type Inside = fn(f64, f64, f64) -> bool;
-        let cases: [(Solid, [f64; 3], Inside); 5] = [
+        let cases: [(Solid, [f64; 3], Inside); 6] = [
             (Solid::Box([0.2, 0.4, 0.6]), [0.1, 0.2, 0.3], |_, _, _| true),
             (Solid::Capsule { radius: 0.3, length: 1.0 }, [0.3, 0.3, 0.8], |x, y, z| {
                 x * x + y * y + (z.abs() - 0.5).max(0.0).powi(2) <= 0.09
@@ -123,6 +123,7 @@ mod tests {
                 x * x / 0.09 + y * y / 0.04 + z * z / 0.25 <= 1.0
             }),
             (Solid::Sphere { radius: 0.4 }, [0.4; 3], |x, y, z| x * x + y * y + z * z <= 0.16),
+            (Solid::Capsule { radius: 0.4, length: 0.0 }, [0.4; 3], |x, y, z| x * x + y * y + z * z <= 0.16),
         ];
         for (solid, bounds, inside) in cases {
             let (volume, I) = integrate(bounds, inside, 120);

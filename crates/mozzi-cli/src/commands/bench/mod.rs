@@ -8,7 +8,7 @@ use super::assemble::needs_constraints;
 use crate::failure::{self, Failure, Result};
 use crate::interrupt;
 use crate::progress::Progress;
-use crate::quantity::{hyphenated, is_of_a_frame, quantity};
+use crate::quantity::{hyphenated, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use crate::workload;
 use clap::Args;
@@ -77,12 +77,15 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     if asked.iter().any(|query| is_empty(query.declaration())) {
         needs_constraints(&model)?;
     }
-    let needs_frame = |query: &Query| is_of_a_frame(*query) || query.declaration().uses == Uses::WRENCHES;
+    let needs_frame = |query: &Query| query.declaration().needs_frame() || query.declaration().uses == Uses::WRENCHES;
     let tip = if asked.iter().any(needs_frame) { end_effector(&model) } else { model.end_effector().ok() };
     let is_of_wrenches = |query: Query| query.declaration().uses == Uses::WRENCHES;
-    let asked = asked.into_iter().filter(|&query| tip.is_some() || !(is_of_a_frame(query) || is_of_wrenches(query)));
-    let queries: Vec<Query> =
-        asked.map(|query| tip.filter(|_| is_of_a_frame(query)).map_or(query, |tip| query.of(tip))).collect();
+    let asked = asked
+        .into_iter()
+        .filter(|&query| tip.is_some() || !(query.declaration().needs_frame() || is_of_wrenches(query)));
+    let queries: Vec<Query> = asked
+        .map(|query| tip.filter(|_| query.declaration().needs_frame()).map_or(query, |tip| query.of(tip)))
+        .collect();
     let threads = arguments.threads.unwrap_or_else(|| Batch::<f64>::of(&model).threads());
     let states = states(arguments.states, &model, &queries)?;
     let data = Data::new(&model, states as usize);

@@ -39,6 +39,7 @@ pub fn compute<T: Precision>(
         let file = &states.samples.file;
         return Err(Failure::wrong(format!("--gpu: {file} has {what} for each state, expected the robot's own alone")));
     }
+    check_orientations(model, states)?;
     let count = states.samples.count;
     let mut results = results::arrays::<T>(query, model, count);
     interrupt::listen();
@@ -64,6 +65,20 @@ pub fn compute<T: Precision>(
     let seconds = start.elapsed().as_secs_f64();
     results.iter_mut().for_each(|array| array.truncate(first));
     Ok((results, seconds))
+}
+
+/// The kernel takes each quaternion for one of length 1.
+fn check_orientations<T: Precision>(model: &Model, states: &States<T>) -> Result<()> {
+    let nq = model.nq();
+    if nq == model.n() {
+        return Ok(());
+    }
+    for (state, row) in states.inputs[0].chunks_exact(nq).enumerate() {
+        let theta: Vec<f64> = row.iter().map(|&x| x.into()).collect();
+        let at = |error| Failure::wrong(format!("{}: {error}", states.samples.place(state)));
+        model.check_configuration(&theta).map_err(at)?;
+    }
+    Ok(())
 }
 
 /// A state that gave NaN, although it has none, is computed again by the CPU, whose error names the joint.

@@ -158,7 +158,7 @@ fn vjp_of(query: Query<'static>) -> Result<Query<'static>> {
 
 /// Prints a note if the robot's constraints are left out.
 fn note_constraints(query: Query, model: &Model) {
-    let of_tree = ["forward_dynamics", "inverse_dynamics", "gravity_forces"];
+    let of_tree = ["forward_dynamics", "inverse_dynamics", "bias_forces", "gravity_forces", "task_space_dynamics"];
     if model.constraint_rows() > 0 && of_tree.iter().any(|name| query.name().starts_with(name)) {
         failure::note(
             "the robot's constraints do not act in this quantity; `constrained-forward-dynamics` applies them",

@@ -3,7 +3,7 @@
 use super::{gpu, subject};
 use crate::failure::{self, Failure, Result};
 use crate::progress::Progress;
-use crate::quantity::{hyphenated, is_of_a_frame};
+use crate::quantity::hyphenated;
 use crate::robot::RobotArguments;
 use crate::tables::array::{Array, tuple};
 use crate::tables::format::Format;
@@ -91,7 +91,7 @@ impl Job<'_> {
         let frames =
             states.wrenches.iter().map(|(frame, _)| frame).chain(environment.applied.iter().map(|(frame, _)| frame));
         let has_tip = model.end_effector().is_ok_and(|tip| frames.copied().any(|frame| frame == tip));
-        if robot.end_effector.is_some() && !is_of_a_frame(query) && !has_tip {
+        if robot.end_effector.is_some() && !query.declaration().needs_frame() && !has_tip {
             return Err(Failure::wrong(format!("--frame has no effect: {file} has no wrench of that frame")));
         }
         // the states are computed in pieces: by one engine

@@ -3,7 +3,6 @@
 use super::stacked;
 use super::values::Terms;
 use crate::numbers::{TWIST, WRENCH};
-use crate::quantity::is_of_a_frame;
 use crate::robot::{Units, space_frame};
 use crate::table::{Quantity, quantities, short, with_rows_named};
 use crate::text::{Page, Sections, beside, flow, matrix, scalar, sixes, table, tuple};
@@ -88,7 +87,7 @@ pub fn wrench(terms: &Terms) -> Vec<String> {
 pub fn blocks(terms: &Terms, list: &[(&str, Query, usize)]) -> Vec<String> {
     let block = |&(title, query, output): &(&str, Query, usize)| {
         let lines = matrix(&terms.matrix(query, output)?);
-        let is_of_twists = is_of_a_frame(query) && query != ForwardKinematics.into();
+        let is_of_twists = query.declaration().needs_frame() && query != ForwardKinematics.into();
         Some((title.to_string(), if is_of_twists { with_rows_named(lines) } else { lines }))
     };
     beside(&list.iter().filter_map(block).collect::<Vec<_>>())

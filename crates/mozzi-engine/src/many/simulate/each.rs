@@ -47,7 +47,7 @@ impl<T: Number> Batch<T> {
     /// True if dry friction acts on any robot in these environments.
     pub(super) fn has_dry_friction(&self, environment: &BatchEnvironment<T>) -> bool {
         match environment.parameters {
-            None => self.model().joints().any(|joint| joint.friction != 0.0),
+            None => self.model().has_dry_friction(),
             Some(table) => {
                 let is_friction: Vec<bool> =
                     self.model().parameter_names().iter().map(|name| name.ends_with(".friction")).collect();

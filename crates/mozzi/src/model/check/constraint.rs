@@ -62,7 +62,7 @@ impl Report<'_> {
                         let Gear { joint, ratio } = gear;
                         self.one_axis(element, attribute, joint, joints);
                         if !(ratio.is_finite() && *ratio != 0.0) {
-                            let message = format!("has `{joint}` times {ratio}, expected a finite number but 0");
+                            let message = format!("has `{joint}` times {ratio}, expected a finite number other than 0");
                             self.error(element, attribute, "not_finite", message);
                         }
                         if !seen.insert(joint) {
@@ -76,7 +76,7 @@ impl Report<'_> {
         for name in d.motors.iter().flatten() {
             match joints.get(name.as_str()) {
                 Some(&Element::Joint(k)) if matches!(d.joints[k].kind, JointKind::Fixed) => {
-                    let message = format!("hold `{name}`, which is fixed, expected joints that move");
+                    let message = format!("hold `{name}`, a fixed joint, expected joints that move");
                     self.error(Element::Robot, "motors", "fixed_motor", message);
                 }
                 Some(&Element::Joint(k)) if d.joints[k].mimic.is_some() => {

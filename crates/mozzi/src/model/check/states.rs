@@ -45,7 +45,7 @@ impl Report<'_> {
                 continue;
             };
             if !seen.insert(name) {
-                let message = format!("`{name}` stands there twice, expected once");
+                let message = format!("names `{name}` twice, expected once");
                 self.error(element, "joints", "repeated_joint", message);
             }
             match &d.joints[k] {
