@@ -155,6 +155,39 @@ fn a_start_in_the_ground_is_lifted_and_a_deep_one_is_refused() {
     assert!(said.contains("8 contact points, 1 plane"), "{said}");
 }
 
+/// A pinned foot is where it stands on the ground, and loops are closed before the robot is put there.
+#[test]
+fn pinned_and_closed_robots_start_on_the_ground() {
+    let common = ["simulate", "anymal", "--floating", "--ground", "--time", "0.01"];
+    let found = json(&[&common[..], &["--pin", "LF_FOOT=point"]].concat());
+    let start = rows(&found["theta"]).remove(0);
+    assert!((start[6] - 0.57125).abs() < 1e-4, "{start:?}");
+    // two legs of unequal length that a rod keeps at their distance: closing the loop turns them
+    let leg = |name: &str, y: f64, length: f64| {
+        format!(
+            "<link name='{name}'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' ixz='0' \
+             iyz='0'/></inertial><collision><origin xyz='0 0 {at}'/><geometry><box size='0.05 0.05 {length}'/></geometry>\
+             </collision></link><joint name='{name}_hip' type='continuous'><parent link='body'/><child link='{name}'/>\
+             <origin xyz='0 {y} 0'/><axis xyz='1 0 0'/></joint>",
+            at = -0.5 * length
+        )
+    };
+    let body = "<link name='body'><inertial><mass value='3'/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' \
+                iyz='0'/></inertial></link>";
+    let robot = format!("<robot name='biped'>{body}{}{}</robot>", leg("left", 0.2, 0.5), leg("right", -0.2, 0.4));
+    let folder = folder("ground_loop");
+    let robot = file(&folder, "biped.urdf", &robot);
+    let rod = r#"{"constraints": [{"name": "rod", "kind": "distance", "length": 0.3, "a": {"frame": "left", "xyz":
+      [0, 0, -0.2]}, "b": {"frame": "right", "xyz": [0, 0, -0.2]}}]}"#;
+    let rod = file(&folder, "rod.json", rod);
+    let flags = ["simulate", &*robot, "--constraints", &rod, "--floating", "--ground", "--time", "0.01"];
+    let found = json(&flags);
+    let start = rows(&found["theta"]).remove(0);
+    let legs = [(start[7], 0.5), (start[8], 0.4)]; // the lowest corner of each touches, or is above
+    let low = legs.map(|(angle, length)| start[6] - length * angle.cos() - 0.025 * angle.sin().abs());
+    assert!(start[7].abs() > 0.05 && low[0].min(low[1]).abs() < 1e-3, "{start:?} {low:?}");
+}
+
 #[test]
 fn mjcf_touches_by_its_bits_and_stands_on_its_own_planes() {
     // the drawn box collides, the one of group 3 does not; the floor is 0.2 m up

@@ -1,7 +1,7 @@
 //! A request for a quantity, by name.
 
 use crate::drawn::{self, Drawn};
-use mozzi::quantities::{Declaration, INPUTS, LIST, Of, Query, Subject};
+use mozzi::quantities::{Declaration, INPUTS, LIST, Query, Subject};
 use mozzi::{FrameId, Model, TaskFrame, Vec3};
 use serde_json::{Map, Value, json};
 
@@ -120,7 +120,7 @@ fn of_list(name: &str, frame: Option<FrameId>, entries: &Map<String, Value>, mod
     let asked = Asked { index, frame, coordinates, rows, point: Vec3(point) };
     let mut query: Query = Query::at(index);
     query.subject = asked.subject();
-    if matches!(declaration.of, Of::Frame | Of::Task) {
+    if declaration.needs_frame() {
         query.check_subject(model).map_err(|error| error.to_string())?;
     }
     let shapes = declaration.outputs.iter().zip(query.shapes(model));

@@ -19,6 +19,7 @@ use crate::{input, interrupt, json, log};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi::model::Bounds;
+use mozzi::model::description::ConstraintKind;
 use mozzi::quantities::ForwardDynamics;
 use mozzi_engine::{Compiled, Engine, compile};
 use mozzi_motion::controllers::{Saturated, Tracking};
@@ -100,13 +101,24 @@ enum Way {
     Midpoint,
 }
 
+/// Where a motion starts, and what is known before it.
+struct Start {
+    theta: Vec<f64>,
+    dtheta: Vec<f64>,
+    followed: Option<Followed>,
+    contacts: Contacts<'static>,
+    limits: Limit,
+}
+
 /// Rows that are kept for the table on the screen.
 const KEPT: usize = 20_000;
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
     arguments.out.as_deref().map(log::format).transpose()?; // checked before the motion, which may take long
-    let model = arguments.robot.load_at(|model| Ok(arguments.start.read(model)?.0))?;
-    let outcome = arguments.simulate(&model)?;
+    let mut start = None;
+    let model = arguments.robot.load_at(|model| Ok(start.insert(arguments.started(model)?).theta.clone()))?;
+    let start = start.map_or_else(|| arguments.started(&model), Ok)?;
+    let outcome = arguments.simulate(&model, start)?;
     let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
     let text = match arguments.out.as_deref() {
         Some("-") => {
@@ -178,7 +190,9 @@ impl SimulateArguments {
         }
     }
 
-    fn simulate(&self, model: &Model) -> Result<Outcome> {
+    /// The start, before frames are pinned: loops are closed, then the base is put on the ground; but if a constraint
+    /// holds the robot to {s}, the base is where the ground wants it first.
+    fn started(&self, model: &Model) -> Result<Start> {
         workload::matrices(model)?;
         let followed = self.motors.followed(model)?;
         let (mut theta, mut dtheta) = self.start.read(model)?;
@@ -194,11 +208,28 @@ impl SimulateArguments {
         if limits == Limit::Respect {
             within_limits(model, &mut theta, &left_out);
         }
-        if !contacts.is_empty() {
-            let is_own = model.is_floating() && left_out[6]; // the base's z
-            settle(self.ground.flag(), model, &contacts, &mut theta, is_own)?;
+        let ground = self.ground.flag();
+        let on_ground = |theta: &mut [f64]| match contacts.is_empty() {
+            true => Ok(()),
+            false => settle(ground, model, &contacts, theta, model.is_floating() && left_out[6]), // the base's z
+        };
+        let is_held = model.constraints().iter().any(|constraint| match &constraint.kind {
+            ConstraintKind::Frames { a, b, .. } => a.frame.is_none() || b.frame.is_none(),
+            ConstraintKind::Joint { .. } => false,
+        });
+        if is_held {
+            on_ground(&mut theta)?;
         }
-        let (theta, dtheta) = assembled(model, theta, dtheta)?;
+        (theta, dtheta) = assembled(model, theta, dtheta)?;
+        if !is_held {
+            on_ground(&mut theta)?;
+        }
+        Ok(Start { theta, dtheta, followed, contacts, limits })
+    }
+
+    fn simulate(&self, model: &Model, start: Start) -> Result<Outcome> {
+        let Start { theta, dtheta, followed, contacts, limits } = start;
+        let (theta, dtheta) = assembled(model, theta, dtheta)?; // with pinned frames
         let hold = Hold::new(&theta, model.n());
         let controller = self.motors.controller(&self.robot)?;
         let end = match (&self.time, &followed) {

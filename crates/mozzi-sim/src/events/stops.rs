@@ -22,14 +22,14 @@ pub struct Stopped {
     pub limit: f64,
     /// When it first reached the limit, s.
     pub first: f64,
-    /// The largest excess beyond the limit, rad or m: 0 if limits are respected.
+    /// The largest excess beyond the limit, rad or m: 0 if limits are respected, unless a stop did not hold.
     pub beyond: f64,
     /// How often it reached the limit.
     pub times: usize,
 }
 
 /// A start may be beyond a limit by this much, rad or m: a run that ended at a stop can go on from its last state.
-const NEAR: f64 = 1e-5;
+pub(crate) const NEAR: f64 = 1e-5;
 
 /// The state of the joints' limits along a motion.
 pub(crate) struct Stops {
@@ -93,6 +93,20 @@ impl Stops {
     /// Records a joint that an impulse stopped.
     pub fn note_impulse(&mut self, t: f64, k: usize, side: usize) {
         self.note(t, k, side, 0.0, true);
+    }
+
+    /// Records how far joints are beyond the stops that should have held them.
+    pub fn note_excess(&mut self, t: f64, theta: &[f64]) {
+        if self.policy != Policy::Respect {
+            return;
+        }
+        for i in 0..self.sides.len() {
+            let (k, side) = self.sides[i];
+            let excess = self.excess(theta, k, side);
+            if excess > 2.0 * NEAR {
+                self.note(t, k, side, excess, false);
+            }
+        }
     }
 
     /// How far joint k is beyond its lower (0) or upper (1) bound.

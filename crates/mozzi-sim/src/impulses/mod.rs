@@ -48,6 +48,8 @@ pub(crate) struct Impulses<'r> {
     stops: Option<(Bounds, Vec<(usize, usize)>)>,
     /// The velocities with dry friction.
     pub dry: Vec<usize>,
+    /// Stops that act in the present step though they seemed too far away.
+    pub passed: Vec<(usize, usize)>,
     /// Contacts at most this far act, m.
     reach: f64,
     pub memory: Memory,
@@ -175,6 +177,7 @@ impl<'r> Impulses<'r> {
             clouds: Cloud::all(contacts),
             stops,
             dry,
+            passed: Vec::new(),
             reach: (g * h * h).max(NEAR),
             memory: Memory::default(),
             account: OneSidedAccount::default(),

@@ -17,6 +17,10 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 /// Gaps below this are rounding, m.
 const CLOSED: f64 = 1e-13;
 const CORRECTIONS: usize = 3;
+/// A correction that moves a joint farther may press other points into a plane, rad or m.
+const STILL: f64 = 1e-5;
+/// Rounds in which these points are added to the rows.
+const ADDITIONS: usize = 3;
 /// Joints this near to a limit are at it, rad or m.
 const AT_LIMIT: f64 = 1e-11;
 /// G is made regular by adding a part of its diagonal, because rows may be redundant, or more than the joints can meet:
@@ -54,6 +58,8 @@ struct Nearer {
     open: Vec<OpenRow>,
     errors: DVector<f64>,
     halves: bool,
+    /// The largest change of a joint, rad or m.
+    farthest: f64,
 }
 
 impl Impulses<'_> {
@@ -68,7 +74,8 @@ impl Impulses<'_> {
         }
         self.move_anchors(h);
         self.set_anchors(t, theta, Some(&stopped));
-        let (mut open, mut errors) = self.open_rows(t, theta);
+        let mut pressed = Vec::new();
+        let (mut open, mut errors) = self.open_rows(t, theta, &pressed);
         let mut changes = false;
         for correction in 0..CORRECTIONS {
             if errors.amax() < CLOSED {
@@ -77,7 +84,22 @@ impl Impulses<'_> {
             if correction == 0 {
                 self.mass.factor(theta, 0.0, &[])?;
             }
-            let Some(nearer) = self.nearer(t, theta, open, &errors) else { break };
+            let mut found = self.nearer(t, theta, open, &errors, &pressed);
+            for addition in 0..=ADDITIONS {
+                let Some(nearer) = found.as_ref().filter(|nearer| nearer.farthest > STILL) else { break };
+                let more = self.pressed(t, &nearer.theta, errors.amax(), &pressed);
+                if more.is_empty() {
+                    break;
+                }
+                if addition == ADDITIONS {
+                    found = None;
+                    break;
+                }
+                pressed.extend(more);
+                (open, errors) = self.open_rows(t, theta, &pressed);
+                found = self.nearer(t, theta, open, &errors, &pressed);
+            }
+            let Some(nearer) = found else { break };
             theta.copy_from_slice(&nearer.theta);
             changes = true;
             if !nearer.halves {
@@ -90,9 +112,27 @@ impl Impulses<'_> {
         Ok(changes)
     }
 
+    /// Points that did not carry and are deeper in a plane than the errors that are corrected: a link with little
+    /// inertia would turn about those that did until it stands on another one, in each step on other ones.
+    fn pressed(&self, t: f64, theta: &[f64], error: f64, known: &[(usize, usize)]) -> Vec<(usize, usize)> {
+        let carries = |pair: (usize, usize)| {
+            self.memory.carrying.iter().any(|&(key, _)| key == Key::Contact(pair.0, pair.1)) || known.contains(&pair)
+        };
+        let near = self.near([t, t], theta, theta).into_iter();
+        let deep = near.filter(|(.., touch)| touch.gap < -error.max(CLOSED));
+        deep.map(|(point, plane, _)| (point, plane)).filter(|&pair| !carries(pair)).collect()
+    }
+
     /// A configuration with smaller errors, Σ e²/G_rr, which is δᵀMδ as if each row were alone, of anchors a part of
     /// it. None if there is none.
-    fn nearer(&mut self, t: f64, theta: &[f64], open: Vec<OpenRow>, errors: &DVector<f64>) -> Option<Nearer> {
+    fn nearer(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        open: Vec<OpenRow>,
+        errors: &DVector<f64>,
+        pressed: &[(usize, usize)],
+    ) -> Option<Nearer> {
         let yields: Vec<f64> = open.iter().map(OpenRow::compliance).collect();
         let J = self.jacobian(theta, open);
         let G = self.delassus(&J);
@@ -115,25 +155,43 @@ impl Impulses<'_> {
                 return None; // a joint with hardly any inertia would turn by anything
             }
             integrate(self.model, &mut theta, change.as_slice(), 1.0);
-            let (open, errors) = self.open_rows(t, &theta);
-            let left = size(&errors);
-            (left < before).then_some(Nearer { theta, open, errors, halves: left < 0.25 * before })
+            let (open, errors) = self.open_rows(t, &theta, pressed);
+            let (left, farthest) = (size(&errors), change.amax());
+            (left < before).then_some(Nearer { theta, open, errors, halves: left < 0.25 * before, farthest })
         })
     }
 
     /// Joints that are at their limits to rounding are there exactly.
     fn put_at_limits(&self, theta: &mut [f64]) {
-        let Some((bounds, _)) = &self.stops else { return };
         for &(key, _) in &self.memory.carrying {
             let Key::Stop(k, side) = key else { continue };
             if self.room(theta, k, side).abs() < AT_LIMIT {
-                bounds.places[k].put_at_limit(theta, bounds.joints[k][side]);
+                self.put_at_limit(theta, k, side);
             }
         }
     }
 
-    /// Rows of the contacts, stops and constraints that hold, and how far to move along them.
-    fn open_rows(&mut self, t: f64, theta: &[f64]) -> (Vec<OpenRow>, DVector<f64>) {
+    fn put_at_limit(&self, theta: &mut [f64], k: usize, side: usize) {
+        let Some((bounds, _)) = &self.stops else { return };
+        bounds.places[k].put_at_limit(theta, bounds.joints[k][side]);
+    }
+
+    /// Puts joints that are beyond their stops nevertheless at them: with hardly any inertia they come and go within a
+    /// step. Loops hold theirs.
+    pub fn put_within_stops(&self, theta: &mut [f64]) {
+        if self.model.constraint_rows() > 0 {
+            return;
+        }
+        for &(k, side) in self.sides() {
+            if self.is_beyond(theta, k, side) {
+                self.put_at_limit(theta, k, side);
+            }
+        }
+    }
+
+    /// Rows of the contacts, stops and constraints that hold and of points that would be pressed, and how far to move
+    /// along them.
+    fn open_rows(&mut self, t: f64, theta: &[f64], pressed: &[(usize, usize)]) -> (Vec<OpenRow>, DVector<f64>) {
         let (model, n) = (self.model, self.model.n());
         let (mut rows, mut errors) = (Vec::new(), Vec::new());
         let surfaces = self.surfaces(t);
@@ -158,6 +216,11 @@ impl Impulses<'_> {
                 }
                 _ => {}
             }
+        }
+        for &(point, plane) in pressed {
+            let touch = self.touch(theta, point, &surfaces[plane]);
+            rows.push(OpenRow::Point(self.contacts.points[point].frame, touch, 0));
+            errors.push(touch.gap);
         }
         let m = model.constraint_rows();
         if m > 0 {

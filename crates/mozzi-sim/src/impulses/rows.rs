@@ -67,6 +67,10 @@ impl System {
     }
 }
 
+/// A joint that is farther beyond its stop was not stopped, rad or m: what it gains in a step from its acceleration is
+/// less.
+const PASSED: f64 = 1e-4;
+
 /// Rows that act at once: their matrix G has 300 MB.
 const MOST_ROWS: usize = 6000;
 
@@ -140,7 +144,8 @@ impl Impulses<'_> {
         for &(k, side) in self.sides() {
             // along the limit's own gradient: a ball may come past the half turn in a step
             let rate: f64 = self.stop_row(start, k, side).iter().zip(dtheta).map(|(a, rate)| a * rate).sum();
-            if self.room(start, k, side) - h * rate.max(0.0) > super::NEAR {
+            let is_far = self.room(start, k, side) - h * rate.max(0.0) > super::NEAR;
+            if is_far && !self.passed.contains(&(k, side)) {
                 continue;
             }
             blocks.push((Key::Stop(k, side), w.len(), Law::Stop));
@@ -233,6 +238,26 @@ impl Impulses<'_> {
             let ([low, high], value) = (bounds.joints[k], bounds.value(theta, k));
             if side == 0 { value - low } else { high - value }
         })
+    }
+
+    /// Adds the stops that a step would pass without being stopped, where a joint with little inertia becomes fast
+    /// within it; false if there are none.
+    pub fn add_passed(&mut self, system: &System, theta: &[f64]) -> bool {
+        let acts = |k: usize, side: usize| system.rows.iter().any(|&(key, ..)| key == Key::Stop(k, side));
+        let is_passed = |&&(k, side): &&(usize, usize)| self.room(theta, k, side) < -PASSED && !acts(k, side);
+        let found: Vec<(usize, usize)> = self.sides().iter().filter(is_passed).copied().collect();
+        self.passed.extend(&found);
+        !found.is_empty()
+    }
+
+    /// True if a joint is farther beyond a stop than a start may be.
+    pub(super) fn is_beyond(&self, theta: &[f64], k: usize, side: usize) -> bool {
+        self.room(theta, k, side) < -2.0 * crate::events::stops::NEAR
+    }
+
+    /// True if any joint is.
+    pub fn is_beyond_a_stop(&self, theta: &[f64]) -> bool {
+        self.sides().iter().any(|&(k, side)| self.is_beyond(theta, k, side))
     }
 
     /// The rate of the joint towards its limit.

@@ -105,8 +105,8 @@ impl Moreau {
         Ok(())
     }
 
-    /// A part of a step, of h seconds, then positions and loops put right. False if its iteration does not contract,
-    /// unless it counts nevertheless.
+    /// A part of a step, of h seconds, then positions and loops put right. False if its iteration does not contract, or
+    /// a joint is beyond its stop, unless it counts nevertheless.
     fn part<I: Input>(
         &mut self,
         driven: &mut Driven<'_, I>,
@@ -118,7 +118,11 @@ impl Moreau {
         let (equation, end) = (&mut driven.equation, state.t + h);
         let mut rest = h;
         for division in 0..=DIVISIONS {
-            let trial = self.trial(equation, impulses, state, rest, &[])?;
+            impulses.passed.clear();
+            let mut trial = self.trial(equation, impulses, state, rest, &[])?;
+            while impulses.add_passed(&trial.system, &trial.to.theta) {
+                trial = self.trial(equation, impulses, state, rest, &[])?;
+            }
             if !trial.settles {
                 if !counts {
                     return Ok(false);
@@ -146,6 +150,7 @@ impl Moreau {
         let before =
             (!impulses.memory.carrying.is_empty()).then(|| equation.energy(&state.theta, &state.dtheta, state.works));
         let corrects = impulses.correct(end, &mut state.theta, h)?;
+        impulses.put_within_stops(&mut state.theta);
         driven.close(end, &mut state.theta, &mut state.dtheta)?;
         if let (true, Some(before)) = (corrects, before) {
             let after = driven.equation.energy(&state.theta, &state.dtheta, state.works);
@@ -154,7 +159,7 @@ impl Moreau {
             // what touched did so earlier or later in the step, at another speed: the contacts' loss is that much less
             state.works[1] -= lifted;
         }
-        Ok(true)
+        Ok(counts || !impulses.is_beyond_a_stop(&state.theta))
     }
 
     /// The time at which the first of these joints comes to rest, while they slide, and the step until then.

@@ -76,7 +76,7 @@ fn an_open_start_is_refused_and_a_motor_turns_the_crank() {
     assert!(error.to_string().contains("a velocity that violates constraint `loop`"), "{error}");
     let push = torque(|_, _, _, tau: &mut [f64]| tau[0] = 0.3);
     let motion = simulate(&model, &theta, &dtheta, push, &options).expect("a motion");
-    assert!(motion.largest_drift() < 1e-9 && motion.last().energy.motor_work > 0.0);
+    assert!(motion.largest_drift() < 1e-9 && motion.last().energy.motor_work > 0.0, "{:e}", motion.largest_drift());
 }
 
 #[test]

@@ -140,7 +140,7 @@ fn a_ball_that_lands_rolls_at_once() {
             for i in 0..2 {
                 let rate = (after.theta[4 + i] - before.theta[4 + i]) / 1e-3;
                 let expected = v[i] - 2.0 / 7.0 * slip[i];
-                assert!((rate - expected).abs() < 1e-9, "{k}: {rate} {expected} at {}", after.t);
+                assert!((rate - expected).abs() < 1e-5, "{k}: {rate} {expected} at {}", after.t);
             }
         }
     }

@@ -1,6 +1,8 @@
 //! Stops as impulses, next to dry friction.
 
 use super::robots::{block, by};
+use mozzi::model::description::{Joint, JointKind};
+use mozzi::{Description, SE3, ScrewAxis, SpatialInertia, Sym3, Vec3};
 use mozzi_sim::{Friction, Method, Options, Policy, Simulation, Trajectory, Zero, torque};
 
 #[test]
@@ -87,4 +89,40 @@ fn a_start_beyond_a_limit_is_reported_at_once() {
     let run = Simulation::new(options).run(&model, &[0.5], &[0.0], Zero).expect("a motion");
     let stop = &run.stops[0];
     assert!(stop.first == 0.0 && stop.limit == 0.3 && (stop.beyond - 0.2).abs() < 1e-12, "{stop:?}");
+}
+
+/// Three axes without inertia between them, of which two align at the middle one's stop: there a joint becomes as fast
+/// as it likes within a step, and the others' stops hold it.
+#[test]
+fn a_gimbal_stays_within_its_stops() {
+    let body = SpatialInertia::new(4.0, Vec3([0.0, 0.1, 0.02]), Sym3::diagonal(0.02, 0.01, 0.02));
+    let limit = 1.5708;
+    let turn = |name: &str, parent: &str, child: &str, axis: [f64; 3]| {
+        let axis = JointKind::Screw(ScrewAxis::new(axis, [0.0; 3]).expect("unit"));
+        let mut joint = Joint::new(name, parent, child, SE3::identity(), axis);
+        joint.limits.position = Some([-limit, limit]);
+        joint
+    };
+    let model = ["w", "v1", "v2"]
+        .into_iter()
+        .fold(Description::new("gimbal"), |robot, name| robot.link(name, SpatialInertia::zero()))
+        .link("head", body)
+        .joint(turn("z", "w", "v1", [0.0, 0.0, -1.0]))
+        .joint(turn("x", "v1", "v2", [1.0, 0.0, 0.0]))
+        .joint(turn("y", "v2", "head", [0.0, 1.0, 0.0]))
+        .build()
+        .expect("sound");
+    let options = Options { joint_limits: Policy::Respect, ..by(Method::MoreauJean, 2.0, 1e-3) };
+    for k in 0..20 {
+        let part = |a: f64| (a * f64::from(k) + 0.3).sin();
+        let theta = [1.4 * part(1.1), 1.4 * part(1.7), 1.4 * part(2.3)];
+        let dtheta = [7.0 * part(2.9), 7.0 * part(3.1), 7.0 * part(3.7)];
+        let run = Simulation::new(options).run(&model, &theta, &dtheta, Zero).expect("a motion");
+        let first = run.motion.samples().next().expect("a row").energy.total();
+        for row in run.motion.samples() {
+            let farthest = row.theta.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            assert!(farthest < limit + 1e-4, "{k}: {:?} at {} s", row.theta, row.t);
+            assert!(row.energy.total() < first + 1e-2, "{k}: {} J of {first} at {} s", row.energy.total(), row.t);
+        }
+    }
 }

@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 const OPTIONS: fn() -> Options =
     || Options { starts: 1, iterations: 40, angle: 1e-6, distance: 1e-6, ..Options::default() };
 
-/// Moves a frame's origin to a point of {s}, with its orientation if `keep` is true. A floating base stays, and so do
-/// constraints.
+/// Moves a frame's origin to a point of {s}, with its orientation if `keep` is true. A floating base stays;
+/// constraints are closed again afterwards.
 pub fn reach(robot: &mut Robot, command: &Value) -> Result<Value, String> {
     let said = |error: mozzi::Error| error.to_string();
     let frame = text(command, "frame")?;
@@ -34,7 +34,8 @@ pub fn reach(robot: &mut Robot, command: &Value) -> Result<Value, String> {
         let (joints, is_reached) = found(&still, id, base.inverse() * goal, keep, &theta[7..])?;
         ([&theta[..7], &joints].concat(), is_reached)
     } else {
-        found(model, id, goal, keep, &theta)?
+        let open = model.without_constraints().map_err(said)?;
+        found(&open, id, goal, keep, &theta)?
     };
     closed(robot, &theta, &[])?;
     Ok(json!({ "reached": is_reached }))

@@ -11,7 +11,8 @@
 //! After a step by δ, the residual b − Gλ is Rδ.
 //!
 //! ρ is relative to the size of the row's own constraint, so that a cam of 10⁶ rad/rad and a rod of 1 m can belong to
-//! one robot; within a constraint, rows that hardly move are those that the others make redundant.
+//! one robot; within a constraint, rows that hardly move are those that the others make redundant. A thin rod turns
+//! about its axis much more easily than its ends move: next to these, angular rows count little.
 
 use crate::dynamics::{composite_inertias, fill_mass_matrix};
 use crate::linalg::{dense_ldlt, ldlt};
@@ -51,18 +52,18 @@ pub fn factor<S: Scalar + From<C>, C: Scalar>(
     for r in 0..m {
         trace += G[r * m + r];
     }
-    let relative = relative_rho::<S>();
+    let relative = power_of_epsilon::<S>(5, 8);
     let least = trace * S::from_f64(relative * relative / m.max(1) as f64); // rows of rounding errors
     for tie in &model.ties.list {
-        let rows = tie.first..tie.first + tie.kind.rows();
-        let mut own = S::zero();
-        for r in rows.clone() {
-            own += G[r * m + r];
-        }
-        let own = own.mul_add(S::from_f64(relative / tie.kind.rows() as f64), least);
-        for r in rows {
-            rho[r] = own;
-            G[r * m + r] += own;
+        let (linear, end) = (tie.first + tie.kind.angular_rows(), tie.first + tie.kind.rows());
+        let sum = |rows: core::ops::Range<usize>| rows.fold(S::zero(), |sum, r| sum + G[r * m + r]);
+        let (turns, moves) = (sum(tie.first..linear), sum(linear..end));
+        let weight = S::from_f64(relative / tie.kind.rows() as f64);
+        let of_turns = (turns + moves).mul_add(weight, least);
+        let of_moves = turns.mul_add(S::from_f64(power_of_epsilon::<S>(1, 4)), moves).mul_add(weight, least);
+        for r in tie.first..end {
+            rho[r] = if r < linear { of_turns } else { of_moves };
+            G[r * m + r] += rho[r];
         }
     }
     dense_ldlt::factor(G, one_over_d);
@@ -123,10 +124,11 @@ fn shared<'s>(columns: &'s [usize], others: &[usize]) -> &'s [usize] {
     &columns[from..]
 }
 
-/// ρ relative to the mean diagonal entry of a constraint's part of G: 10⁻¹⁰ for `f64`, 3 · 10⁻⁵ for `f32`.
-fn relative_rho<S: Scalar>() -> f64 {
+/// ε to the power of a/b. ε^⅝ is ρ relative to the mean diagonal entry of a constraint's part of G, 10⁻¹⁰ for `f64`
+/// and 3 · 10⁻⁵ for `f32`; ε^¼, 10⁻⁴ and 2 · 10⁻², the weight of angular rows next to linear ones.
+fn power_of_epsilon<S: Scalar>(a: u32, b: u32) -> f64 {
     let half: f64 = 0.5;
-    (0..S::DIGITS * 5 / 8).fold(1.0, |x, _| x * half)
+    (0..S::DIGITS * a / b).fold(1.0, |x, _| x * half)
 }
 
 /// Solves Gλ = b, with b in the memory's `right` and λ in its `lambda`.

@@ -58,6 +58,16 @@ impl<C> TieKind<C> {
             TieKind::Frames { closure, .. } => closure.rows().len(),
         }
     }
+
+    /// The number of its rows of angular velocities, which come first.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn angular_rows(&self) -> usize {
+        match self {
+            TieKind::Frames { closure: Closure::Weld, .. } => 3,
+            TieKind::Frames { closure: Closure::Hinge, .. } => 2,
+            _ => 0,
+        }
+    }
 }
 
 impl<C: Scalar> Ties<C> {
