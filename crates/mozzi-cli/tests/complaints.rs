@@ -130,6 +130,10 @@ fn codes_are_explained() {
     }
     let page = common::text(&["explain", "xacro"]).replace('\n', " ");
     assert!(page.contains("`mozzi xacro robot.xacro name:=value -o robot.urdf`"), "{page}");
+    let page = common::text(&["explain", "lag"]).replace('\n', " ");
+    assert!(page.starts_with("lag (`mozzi identify`)  The force of one joint comes later"), "{page}");
+    assert!(all.contains("\nCodes of `mozzi identify`: acceleration, apparent,"), "{all}");
+    assert!(common::text(&["explain", "not_finite"]).contains("In `mozzi identify`: Rows with NaN"));
     wrong(&["explain", "zero-axes"], &["`zero-axes` is not the code", "did you mean `zero_axis`?"]);
     wrong(&["explain", "mozzi::urdf::mising_limits"], &["did you mean `missing_limit`?"]);
     wrong(&["explain", "xyz"], &["`mozzi explain` lists them"]);

@@ -255,6 +255,15 @@ fn a_urdf_from_mjcf_is_complete() {
     text(&["convert", &moon, &out, "--strict", "--leave-out", "gravity"]);
     let told = String::from_utf8(common::mozzi(&["convert", &moon, &out]).stderr).expect("text");
     assert!(told.contains("omits gravity [0.0, 0.0, -1.62]"), "{told}");
+    // no flag helps a ball
+    let ball =
+        "<mujoco><worldbody><body><joint type=\"ball\"/><geom size=\"0.1\" mass=\"1\"/></body></worldbody></mujoco>";
+    let ball = file(&folder, "ball.xml", ball);
+    for flags in [&[][..], &["--strict"]] {
+        let (code, message) = complaint(&[&["convert", &ball, &out], flags].concat());
+        assert!(code == 1 && message.contains("a ball; .json can express all of it"), "{message}");
+        assert!(!message.contains("--leave-out"), "{message}");
+    }
 }
 
 #[test]

@@ -14,7 +14,7 @@ Every quantity is declared once, at the foot of its kernel's file in `crates/moz
 n is the number of velocities, nq of positions (one more on a floating base), p of inertial parameters, k of a task's rows. Units are
 those of revolute joints, then of prismatic ones; six-vectors are angular first; matrices are by rows. \"Environment\" lists what
 else a quantity depends on: gravity g, wrenches F that frames apply, the twist 𝒱_s and the acceleration 𝒱̇_s of {s}. What is not listed has
-no effect on it.
+no effect on it. The point of a momentum is set by `query.about(…)` in Rust, `about=` in Python, `--about` on the command line.
 
 ## Ways
 

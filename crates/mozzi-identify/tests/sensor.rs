@@ -36,7 +36,7 @@ fn torques_behind_the_gears_are_noticed() {
     let (model, log) = simulated(0.0);
     let found = findings(&model, &log, Sensor::Motor, Cutoff::None);
     assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].contains("`--torque link` leaves armature out"), "{}", found[0]);
+    assert!(found[0].contains("`--torque link` gives the robot no armature"), "{}", found[0]);
     assert!(findings(&model, &log, Sensor::Link, Cutoff::None).is_empty());
     let (model, log) = simulated(0.3);
     let found = findings(&model, &log, Sensor::Motor, Cutoff::None);

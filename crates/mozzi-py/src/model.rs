@@ -22,7 +22,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// share it.
 ///
 /// Arguments are anything NumPy makes an array of. The last axis is a state; leading axes are many states, which are
-/// broadcast by NumPy's rule and computed on all cores. Results are float32 if all arrays given are, else float64.
+/// broadcast by NumPy's rule and computed on all cores. Results are float32 if all given arrays are; a
+/// single gravity, `base_twist` and `base_acceleration` do not count.
 ///
 /// Examples
 /// --------

@@ -12,8 +12,8 @@ const EXAMPLES: &[u8] = include_bytes!("explain_examples.txt.gz");
 
 #[derive(Args, Debug)]
 pub struct ExplainArguments {
-    /// A diagnostic's code: mozzi::urdf::zero_axis, mozzi::mjcf::zero_axis, mozzi::sdf::zero_axis, or zero_axis;
-    /// without one, all codes
+    /// A diagnostic's code: mozzi::urdf::zero_axis, mozzi::mjcf::zero_axis, mozzi::sdf::zero_axis, or zero_axis; or
+    /// one of mozzi identify, such as lag; without one, all codes
     code: Option<String>,
 }
 
@@ -21,7 +21,8 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
     let Some(asked) = &arguments.code else {
         let codes: BTreeSet<&str> = codes().collect();
         let lines: String = codes.into_iter().map(|code| format!("  {code}\n")).collect();
-        return Ok(format!("{lines}\n`mozzi explain zero_axis` explains one of them.\n"));
+        let of_logs = format!("Codes of `mozzi identify`: {}.", mozzi_identify::codes().collect::<Vec<_>>().join(", "));
+        return Ok(format!("{lines}\n{}\n`mozzi explain zero_axis` explains one of them.\n", lines_of(&of_logs)));
     };
     let short = asked.rsplit("::").next().unwrap_or(asked);
     match explain(asked) {
@@ -43,16 +44,26 @@ pub fn run(arguments: &ExplainArguments) -> Result<String> {
             if let Some(remedy) = remedy(asked) {
                 page += &format!("\n{}", lines_of(&format!("Remedy: {remedy}.")));
             }
+            if let Some(meaning) = mozzi_identify::meaning(asked) {
+                page += &format!("\n{}", lines_of(&format!("In `mozzi identify`: {meaning}")));
+            }
             Ok(page)
         }
-        None => {
-            let hint = match nearest_code(asked) {
-                Some(code) => format!("did you mean `{code}`?"),
-                None => "`mozzi explain` lists them".to_string(),
-            };
-            Err(Failure::wrong(format!("`{asked}` is not the code of a diagnostic; {hint}")))
-        }
+        None => of_a_log(asked),
     }
+}
+
+/// The meaning of a code of `mozzi identify`.
+fn of_a_log(asked: &str) -> Result<String> {
+    if let Some(meaning) = mozzi_identify::meaning(asked) {
+        let page = format!("{meaning} The message of `mozzi identify` names the place, the evidence and the remedy.");
+        return Ok(format!("{asked} (`mozzi identify`)\n\n{}", lines_of(&page)));
+    }
+    let hint = match nearest_code(asked) {
+        Some(code) => format!("did you mean `{code}`?"),
+        None => "`mozzi explain` lists them".to_string(),
+    };
+    Err(Failure::wrong(format!("`{asked}` is not the code of a diagnostic; {hint}")))
 }
 
 /// The severity and the examples of a code of one language; those of URDF or MJCF if the language shares the code.

@@ -15,8 +15,11 @@ const WITH_SAY: f64 = 0.25;
 /// Factors that wrong masses in the file explain.
 const BY_MASSES: (f64, f64) = (0.7, 1.4);
 
-/// Factors of different forces are one if they are apart by at most this.
-const SHARED: f64 = 1.15;
+/// The standard deviation of the logarithm of such factors.
+const MASS_ERROR: f64 = 0.2;
+
+/// Masses between the file's and the best that are tried.
+const STEPS: u32 = 8;
 
 /// τ = a τ̂ + d θ̇ + μ tanh(θ̇/0.05) + I θ̈ + o, with d, μ, I ≥ 0.
 #[derive(Clone, Debug, Default)]
@@ -58,7 +61,7 @@ impl Fit {
     }
 
     /// The share of the force's variance that is left with a given a.
-    fn left(&self, a: f64) -> f64 {
+    pub fn left(&self, a: f64) -> f64 {
         let c = |i, j| self.covariance(i, j);
         // of e = τ − a τ̂
         let of_error = |i| c(i, MEASURED) - a * c(i, PREDICTED);
@@ -77,10 +80,20 @@ impl Fit {
         self.left(0.0)
     }
 
-    /// The share that is left with the best a that a wrong mass may explain.
-    pub fn unexplained_by_masses(&self) -> f64 {
+    /// The share that is left with the best a that a wrong mass may explain, if forces are `factor` times too large.
+    pub fn unexplained_by_masses(&self, factor: f64) -> f64 {
         let (low, high) = BY_MASSES;
-        self.unexplained().min(self.left(self.gain().factor.clamp(low, high)))
+        self.left(factor).min(self.left(self.gain().factor.clamp(low * factor, high * factor)))
+    }
+
+    /// The logarithm of the share that is left if forces are `factor` times too large and the force's mass is wrong,
+    /// with a penalty for a wrong mass: the least over the mass.
+    pub fn cost(&self, factor: f64) -> f64 {
+        let of = |a: f64| self.left(factor * a).max(1e-12).ln() + 0.5 * (a.ln() / MASS_ERROR).powi(2);
+        let (low, high) = BY_MASSES;
+        let best = (self.gain().factor / factor).clamp(low, high);
+        // from the mass of the file to the one that fits best
+        (0..=STEPS).map(|k| of(best.powf(f64::from(k) / f64::from(STEPS)))).fold(f64::MAX, f64::min)
     }
 
     /// The best a.
@@ -139,33 +152,39 @@ fn losses(A: [[f64; 3]; 3], b: [f64; 3], square: f64) -> (f64, [f64; 3]) {
     best
 }
 
+/// Whether a factor is far from N m.
+pub fn is_far(factor: f64) -> bool {
+    factor > NEAR_ONE || (0.0..1.0 / NEAR_ONE).contains(&factor)
+}
+
 /// Whether all forces that the file explains are far from N m.
 pub fn is_scale(gains: &[Gain]) -> bool {
     let with_say: Vec<&Gain> = gains.iter().filter(|gain| gain.has_say()).collect();
-    let is_far = |gain: &&Gain| gain.factor > NEAR_ONE || (0.0..1.0 / NEAR_ONE).contains(&gain.factor);
-    3 * with_say.len() >= gains.len() && !with_say.is_empty() && with_say.iter().all(is_far)
+    3 * with_say.len() >= gains.len() && !with_say.is_empty() && with_say.iter().all(|gain| is_far(gain.factor))
 }
 
-/// A factor that the forces share which the file explains, where it is between those of another unit and 1.
-pub fn common(gains: &[Gain]) -> Option<f64> {
-    let mut factors: Vec<f64> = gains.iter().filter(|gain| gain.has_say()).map(|gain| gain.factor).collect();
-    factors.sort_by(f64::total_cmp);
-    let (low, high) = (*factors.first()?, *factors.last()?);
-    let middle = factors[factors.len() / 2];
+/// A factor that two thirds of the forces share which the file explains, but for masses; none if masses explain it.
+pub fn shared(gains: &[Gain]) -> Option<f64> {
+    let factors: Vec<f64> = gains.iter().filter(|gain| gain.has_say()).map(|gain| gain.factor).collect();
     let (lighter, heavier) = BY_MASSES;
-    let is_common = factors.len() >= 2 && 3 * factors.len() >= gains.len() && low > 0.0 && high < SHARED * low;
-    (is_common && !(lighter..=heavier).contains(&middle)).then_some(middle)
+    let alike = |factor: f64| -> Vec<f64> {
+        let is_alike = |other: &&f64| (lighter * factor..=heavier * factor).contains(*other);
+        factors.iter().filter(is_alike).copied().collect()
+    };
+    let most = factors.iter().filter(|factor| **factor > 0.0).map(|factor| alike(*factor)).max_by_key(Vec::len)?;
+    let is_shared = most.len() >= 2 && 3 * most.len() >= 2 * factors.len() && 3 * most.len() >= gains.len();
+    let mean = (most.iter().map(|factor| factor.ln()).sum::<f64>() / most.len() as f64).exp();
+    (is_shared && !(lighter..=heavier).contains(&mean)).then_some(mean)
 }
 
-/// An explanation of the factors.
-pub fn text(gains: &[Gain], names: &[&str]) -> String {
+/// An explanation of the factors, or of the one that all forces share.
+pub fn text(gains: &[Gain], names: &[&str], shared: Option<f64>) -> String {
     let with_say = || gains.iter().zip(names).filter(|(gain, _)| gain.has_say());
     let list: Vec<String> = with_say().take(8).map(|(gain, name)| format!("{name} {:.4}", gain.factor)).collect();
     let (low, high) =
         with_say().fold((f64::MAX, 0.0_f64), |(a, b), (gain, _)| (a.min(gain.factor), b.max(gain.factor)));
-    let is_common = high < 1.6 * low;
-    let middle = (low * high).sqrt();
-    let is_near = |x: f64| is_common && (0.5..2.0).contains(&(middle / x));
+    let middle = shared.or((high < 1.6 * low).then(|| (low * high).sqrt()));
+    let is_near = |x: f64| middle.is_some_and(|middle| (0.5..2.0).contains(&(middle / x)));
     let others = "motor currents in A (--torque current), per mille of the rated torque, or torques of the motor side, \
                   before the gear";
     let causes = if is_near(1e3) {
@@ -175,10 +194,13 @@ pub fn text(gains: &[Gain], names: &[&str]) -> String {
     } else {
         others.to_string()
     };
+    let (times, remedy) = match shared {
+        Some(factor) => (format!("{factor:.4}"), "divide all of them by it"),
+        None => (list.join(", "), "multiply each by its own factor"),
+    };
     format!(
-        "forces are not in N m: they are {} times what the robot's file predicts: {causes}; multiply each by its own \
-         factor, or name the unit in the header, such as tau_1_mNm",
-        list.join(", ")
+        "forces are not in N m: they are {times} times what the robot's file predicts: {causes}; {remedy}, or name the \
+         unit in the header, such as tau_1_mNm"
     )
 }
 
@@ -200,6 +222,20 @@ mod tests {
         assert!((gain.factor - 0.1).abs() < 1e-9 && gain.unexplained < 1e-9, "{gain:?}");
         assert!(fit.unexplained() > 0.5);
         assert!(is_scale(&[gain]) && !is_scale(&[Gain { factor: 1.2, ..gain }]));
-        assert!(text(&[gain], &["elbow"]).contains("currents"));
+        assert!(text(&[gain], &["elbow"], None).contains("currents"));
+        assert!(text(&[gain], &["elbow"], Some(0.1)).contains("they are 0.1000 times"));
+    }
+
+    #[test]
+    fn a_factor_is_shared_by_most_forces() {
+        let all = |factors: &[f64]| -> Vec<Gain> {
+            factors.iter().map(|&factor| Gain { factor, unexplained: 0.01, without: 0.5 }).collect()
+        };
+        let found = shared(&all(&[2.2, 1.8, 21.0])).expect("a factor");
+        assert!((found / 2.0 - 1.0).abs() < 0.01, "{found}");
+        // the file's masses may be wrong by so much; currents have a factor for each motor
+        assert_eq!(shared(&all(&[1.3, 1.1, 1.2])), None);
+        assert_eq!(shared(&all(&[1.0 / 12.0, 1.0 / 12.0, 1.0 / 9.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0])), None);
+        assert_eq!(shared(&all(&[2.0])), None);
     }
 }

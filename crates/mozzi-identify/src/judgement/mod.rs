@@ -51,12 +51,13 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
     for (samples, log) in found.samples.iter().zip(logs) {
         let of_log = found.predicted_unseen(samples)?;
         let all: Vec<Residual> = (0..n).map(|j| Residual::new(names[j], j, n, samples, &of_log)).collect();
+        let above_rounding = residuals::above_rounding(&all);
         let refitted = refit::check(found, &log.name, samples);
         if refitted.is_none() {
-            findings.extend(lag::check(&log.name, &all, 1.0 / samples.rate));
+            findings.extend(lag::check(&log.name, &above_rounding, 1.0 / samples.rate));
         }
         findings.extend(refitted);
-        findings.extend(colour(&log.name, &all));
+        findings.extend(colour(&log.name, &above_rounding));
         findings.extend(unexplained(&log.name, &all));
         findings.extend(blunted(&log.name, samples, columns));
         residuals.push(all);

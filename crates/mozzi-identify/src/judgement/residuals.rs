@@ -3,6 +3,9 @@
 use crate::signals::spectrum::Spectrum;
 use crate::signals::{Samples, derivative};
 
+/// A force or a residual below this part of the largest force is rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// The residual of one force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
@@ -59,6 +62,12 @@ impl Residual {
     }
 }
 
+/// The residuals that mean something: both the force and the residual are above rounding of the largest force.
+pub fn above_rounding(all: &[Residual]) -> Vec<Residual> {
+    let least = ROUNDING * all.iter().map(|r| r.force).fold(0.0, f64::max);
+    all.iter().filter(|r| r.force > least && r.rmse > least).cloned().collect()
+}
+
 /// The correlation of a signal with itself `lag` samples later.
 pub fn autocorrelation(x: &[f64], lag: usize) -> f64 {
     let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
@@ -80,6 +89,23 @@ mod tests {
         let found = Residual::new("joint", 0, 1, &samples, &of(0.0));
         assert!((found.lag - 0.01).abs() < 1e-4, "{}", found.lag);
         assert!(found.autocorrelation > 0.99);
+    }
+
+    /// A joint without a force, as that of a wrist about a vertical axis, and one that is predicted exactly.
+    #[test]
+    fn rounding_is_not_judged() {
+        let residual = |name: &str, force: f64, rmse: f64| Residual {
+            name: name.into(),
+            force,
+            rmse,
+            peak: (0.0, 0.0),
+            autocorrelation: 0.98,
+            lag: 0.1,
+            lag_deviation: 1e-3,
+        };
+        let all = [residual("elbow", 34.0, 0.2), residual("exact", 0.01, 1e-9), residual("wrist", 1.2e-14, 2e-14)];
+        let names: Vec<String> = above_rounding(&all).into_iter().map(|r| r.name).collect();
+        assert_eq!(names, ["elbow"]);
     }
 
     #[test]

@@ -9,11 +9,11 @@ use crate::{Choice, Error, Finding, Identification, Kind};
 const CLEAR: f64 = 3.0;
 
 /// A warning if the armature of every joint is at its bound 0, although forces were taken to be the motors', and if
-/// the forces are predicted as well without it. A rotor behind a gear is felt at the motor as a large inertia of its
-/// own.
+/// the forces are predicted as well without it, by bodies that exist. A rotor behind a gear is felt at the motor as a
+/// large inertia of its own.
 ///
 /// # Errors
-/// Those of the fits without armature.
+/// Those of the fits with and without armature.
 pub fn behind_the_gears(found: &Identification<'_>) -> Result<Option<Finding>, Error> {
     let columns = &found.setup.columns;
     let Some(errors) = found.left_out.as_ref().filter(|_| columns.choice.armature && !columns.choice.gains) else {
@@ -28,23 +28,29 @@ pub fn behind_the_gears(found: &Identification<'_>) -> Result<Option<Finding>, E
     if armatures.is_empty() || (0..columns.count()).any(is_clear) {
         return Ok(None);
     }
-    let choice = Choice { armature: false, ..columns.choice.clone() };
-    let setup = Setup::new(columns.model, choice, found.setup.problem.gamma, &Limits::default())?;
-    let compress = |samples| Compressed::new(&setup.columns, &setup.pattern, samples, None);
-    let logs: Vec<Compressed> = found.samples.iter().map(compress).collect::<Result<_, _>>()?;
-    let (without, _) = cross_validated(&setup, &logs, found.tenths(), 5, &|| false)?;
-    let [with, without] = [errors, &without].map(|errors| 100.0 * errors.normalized(&errors.consistent));
+    // of bodies and rotors that exist: an apparent inertia would take the place of the armature
+    let possible = Choice { apparent: false, ..columns.choice.clone() };
+    let predicted = |choice: Choice| -> Result<f64, Error> {
+        let setup = Setup::new(columns.model, choice, found.setup.problem.gamma, &Limits::default())?;
+        let compress = |samples| Compressed::new(&setup.columns, &setup.pattern, samples, None);
+        let logs: Vec<Compressed> = found.samples.iter().map(compress).collect::<Result<_, _>>()?;
+        let (errors, _) = cross_validated(&setup, &logs, found.tenths(), 5, &|| false)?;
+        Ok(100.0 * errors.normalized(&errors.consistent))
+    };
+    let (with, without) = (predicted(possible.clone())?, predicted(Choice { armature: false, ..possible })?);
     if without > 1.01 * with {
         return Ok(None);
     }
+    let free = 100.0 * errors.normalized(&errors.consistent);
     let least = armatures.iter().map(|(name, value, deviation)| format!("{name} {value:.3} ± {deviation:.3}"));
     Ok(Some(Finding::warning(
         "behind_the_gears",
         format!(
-            "every joint's armature is at its bound 0 (least squares, kg m²: {}), and left-out forces are predicted to \
-             {without:.2} % without it, {with:.2} % with it: the forces seem to be measured behind the gears, where \
-             rotors are not felt, or the rotors are light; `--torque link` leaves armature out. Otherwise friction that \
-             lags at reversals hides it",
+            "every joint's armature is at its bound 0 (least squares, kg m²: {}), and rotors do not help: left-out forces \
+             are predicted to {without:.2} % without armature, {with:.2} % with it ({free:.2} % with apparent inertia and \
+             damping, which may be negative). The forces seem to be measured behind the gears, where rotors are not felt, \
+             or the rotors are light; `--torque link` gives the robot no armature. Otherwise friction that lags at \
+             reversals hides it",
             least.collect::<Vec<_>>().join(", ")
         ),
     )))

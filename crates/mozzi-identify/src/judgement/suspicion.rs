@@ -94,22 +94,27 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
         )
     };
     let is_explained = comparison.is_explained(&best);
-    let (gains, is_rated) = (comparison.gains(), matches!(best, Mistake::Rated(_)) && is_explained);
+    let gains = comparison.gains();
+    if let Some((factor, score)) = comparison.shared(&gains, &best, [as_it_is, least]) {
+        if gains::is_far(factor) {
+            let text = format!("{log}: {}; {}", gains::text(&gains, &names, Some(factor)), evidence(score));
+            return Ok(vec![Finding::fault("unit", text)]);
+        }
+        let text = format!(
+            "{log}: the forces are {factor:.2} times what the robot's file predicts, by one factor for all: another unit \
+             (such as per cent of a rated torque) or a gain of the driver, or all masses of the file are wrong; if they \
+             are not, divide the forces by it; {}",
+            evidence(score)
+        );
+        return Ok(vec![Finding::warning("scale", text)]);
+    }
+    let is_rated = matches!(best, Mistake::Rated(_)) && is_explained;
     let scaled: f64 = gains.iter().map(|gain| gain.unexplained.ln()).sum();
     // a factor for each force explains more than any single mistake: the unit
     let is_better = as_it_is - scaled > CLEAR && scaled < least.min(as_it_is - CLEAR) + APART;
     if gains::is_scale(&gains) && is_better && !is_rated {
-        let text = format!("{log}: {}; {}", gains::text(&gains, &names), evidence(scaled));
+        let text = format!("{log}: {}; {}", gains::text(&gains, &names, None), evidence(scaled));
         return Ok(vec![Finding::fault("unit", text)]);
-    }
-    if let Some(factor) = gains::common(&gains).filter(|_| is_better && !is_rated) {
-        let text = format!(
-            "{log}: the forces are {factor:.2} times what the robot's file predicts, in every joint that it predicts: \
-             another unit or a gain of the driver, or all masses of the file are wrong; if they are not, divide the \
-             forces by it; {}",
-            evidence(scaled)
-        );
-        return Ok(vec![Finding::warning("scale", text)]);
     }
     let gain = as_it_is - least;
     Ok(match () {
@@ -136,6 +141,12 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
         }
         () => Vec::new(),
     })
+}
+
+/// Whether nearly nothing is left if forces are this many times too large, and masses wrong.
+fn is_little(sums: &[Fit], factor: f64) -> bool {
+    let left: f64 = sums.iter().map(|fit| fit.unexplained_by_masses(factor).max(1e-12).ln()).sum();
+    (left / sums.len() as f64).exp() < EXPLAINED
 }
 
 struct Comparison<'a> {
@@ -206,8 +217,26 @@ impl<'a> Comparison<'a> {
     /// Whether nearly nothing is left once the mistake is undone.
     fn is_explained(&mut self, mistake: &Mistake) -> bool {
         let sums = self.sums(mistake);
-        let left: f64 = sums.iter().map(|fit| fit.unexplained_by_masses().max(1e-12).ln()).sum();
-        (left / sums.len() as f64).exp() < EXPLAINED
+        is_little(&sums, 1.0)
+    }
+
+    /// A factor that all forces share and the score without it, if it explains the forces as well as the best mistake,
+    /// and nearly as well as a factor for each force. Forces in shares of the effort limits have a factor for each
+    /// limit.
+    fn shared(&mut self, gains: &[Gain], best: &Mistake, [as_it_is, least]: [f64; 2]) -> Option<(f64, f64)> {
+        let factor = gains::shared(gains)?;
+        let sums = self.sums(&Mistake::None);
+        let score: f64 = sums.iter().map(|fit| fit.left(factor).max(1e-12).ln()).sum();
+        let cost: f64 = sums.iter().map(|fit| fit.cost(factor)).sum();
+        let of_each: f64 = gains.iter().map(|gain| gain.unexplained.ln()).sum();
+        let is_best = match (best, &self.limits) {
+            (Mistake::Rated(whole), Some(limits)) => {
+                cost < sums.iter().zip(limits).map(|(fit, limit)| fit.cost(whole / limit)).sum::<f64>() + APART
+            }
+            _ => score < least + APART,
+        };
+        let is_clear = as_it_is - score > CLEAR && is_little(&sums, factor) && cost < of_each + 2.0 * CLEAR;
+        (is_best && is_clear).then_some((factor, score))
     }
 
     /// The share of each force that the file does not predict.

@@ -319,7 +319,9 @@ def excite(
     harmonics : int
         Harmonics of the Fourier series.
     velocity, acceleration, torque_limit : array_like, optional
-        Limits, one number or one for each joint: rad/s or m/s, rad/s² or m/s², N m or N. Default: the robot's.
+        Limits, one number or one for each joint: rad/s or m/s, rad/s² or m/s², N m or N. Default: the robot's, 1 rad/s
+        or 0.2 m/s if it has no velocity limit, and the acceleration that reaches the velocity limit in 0.3 s, if the
+        robot's is not smaller.
     noise : array_like, optional
         Standard deviation of the forces' noise, N m or N. Default: 1 % of the torque limits.
     rate : float

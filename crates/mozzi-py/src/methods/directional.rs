@@ -76,7 +76,8 @@ impl PyModel {
     /// -------
     /// tuple
     ///     The quantity and its derivative, each as the quantity's method returns it. They are computed in float64, and
-    ///     rounded to float32 if all arrays given are.
+    ///     rounded to float32 if all given arrays are; a single gravity, `base_twist` and `base_acceleration` do not
+    ///     count.
     ///
     /// Raises
     /// ------

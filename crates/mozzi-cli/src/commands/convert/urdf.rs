@@ -50,10 +50,10 @@ pub fn text(
             if is_strict && !robot.states.is_empty() {
                 let names: Vec<&str> = robot.states.iter().map(|state| state.name.as_str()).collect();
                 let why = format!("--strict, and URDF cannot express the named states {}", names.join(", "));
-                return Err(not_written(&why, ".json can express all of it"));
+                return Err(not_written(&why, JSON));
             }
             let robot = reduced(output, robot, &left_out);
-            let text = mozzi_urdf::write(&robot).map_err(|why| not_written(&why, HELP))?;
+            let text = mozzi_urdf::write(&robot).map_err(|why| not_written(&why, &help(&robot)))?;
             ignored_elsewhere(output, &robot);
             shapes(input, output, &settings)?;
             Ok(text)
@@ -67,14 +67,28 @@ pub fn edited(input: &str, output: &str, robot: &Description, keeps_old: bool, s
         Some(text) if keeps_old => {
             relative_meshes(input, output, &text);
             edit_with_old_values(input, &text, robot)
-                .map_err(|why| Failure::wrong(format!("{output} is not written: {why}; {HELP}")))
+                .map_err(|why| Failure::wrong(format!("{output} is not written: {why}; {JSON}")))
         }
         _ => text(input, output, robot, &[], settings),
     }
 }
 
-const HELP: &str = ".json can express all of it; without --strict, or with --leave-out, gravity, rotors and constraints are \
-                    left out";
+const JSON: &str = ".json can express all of it";
+
+/// The remedy for a robot that URDF cannot express; flags are named only if they help.
+fn help(robot: &Description) -> String {
+    let mut rest = robot.clone();
+    rest.gravity = Description::new("").gravity;
+    rest.rotors.clear();
+    only_ball_constraints(&mut rest);
+    rest.motors = None;
+    match mozzi_urdf::write(&rest) {
+        Ok(_) => {
+            format!("{JSON}; without --strict, or with --leave-out, gravity, rotors and constraints are left out")
+        }
+        Err(_) => JSON.to_string(),
+    }
+}
 
 /// A note about the shapes of IN, which are not written.
 pub fn shapes(input: &str, output: &str, settings: &Settings) -> Result<()> {
