@@ -216,7 +216,7 @@ fn a_density_gives_inertias() {
 #[test]
 fn other_languages_are_refused_by_name() {
     let why = |text: &str| proposals("a.xml", text, None, &Settings::default()).unwrap_err().to_string();
-    assert!(why("<mujoco><worldbody/></mujoco>").contains("repairs are of URDF"));
+    assert!(why("<mujoco><worldbody/></mujoco>").contains("only URDF is repaired"));
     let xacro = "<robot name='a' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:property name='x' value='1'/><link name='b'/></robot>";
     assert!(why(xacro).contains("mozzi xacro"), "{}", why(xacro));
     assert!(why("<robot").contains("refused"), "{}", why("<robot"));
