@@ -142,7 +142,7 @@ fn a_link_in_g_and_mm_is_told_by_the_check() {
 fn sdformat_is_not_repaired() {
     let text = "<sdf version='1.9'><model name='m'><link name='a'/></model></sdf>";
     let why = proposals("m.sdf", text, None, &Settings::default()).unwrap_err().to_string();
-    assert!(why.contains("for SDFormat write the repaired numbers yourself"), "{why}");
+    assert!(why.contains("only URDF is repaired, and this is SDFormat"), "{why}");
 }
 
 #[test]
