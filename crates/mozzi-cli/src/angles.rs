@@ -73,15 +73,24 @@ pub fn of_file(file: &str) {
 /// Questions angles, in radians, that are more than two turns: they may be meant in degrees.
 pub fn question(flag: &str, text: &str, found: &[f64], are_angles: &[bool]) {
     let is_large = |(x, is_angle): (&f64, &bool)| *is_angle && x.abs() > 4.0 * std::f64::consts::PI;
-    let has_unit = ["deg", "°", "pi", "π", "rad"].iter().any(|unit| text.contains(unit));
-    if are_degrees() || has_unit {
+    if are_degrees() || has_unit(text) {
         return;
     }
     if let Some((x, _)) = found.iter().zip(are_angles).find(|pair| is_large((pair.0, pair.1))) {
-        let (rates, turns) = (flag == "--dtheta" || flag == "--ddtheta", x / std::f64::consts::TAU);
-        if x.abs() > 1e6 || rates {
-            return note(&format!("{flag} is in radians, and {x:e} is large; degrees: --deg"));
+        let unit = match flag {
+            "--dtheta" => "rad/s",
+            "--ddtheta" => "rad/s²",
+            _ => "radians",
+        };
+        let turns = x / std::f64::consts::TAU;
+        if x.abs() > 1e6 || unit != "radians" {
+            return note(&format!("{flag} is in {unit}, and {x:e} is large; degrees: --deg"));
         }
         note(&format!("{flag} is in radians, and {x} rad are {turns:.1} turns; degrees: --deg, or {x}deg"));
     }
+}
+
+/// Whether a number or a name states the unit of an angle.
+pub fn has_unit(text: &str) -> bool {
+    ["deg", "°", "pi", "π", "rad"].iter().any(|unit| text.contains(unit))
 }

@@ -74,7 +74,8 @@ fn with_unit(place: impl Display, text: &str) -> Result<(f64, Unit)> {
 fn has_unit(text: &str) -> bool {
     let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c)).trim_start();
     let number = text[..text.len() - unit.len()].trim_end();
-    number.parse::<f64>().is_ok() && unit.starts_with(char::is_alphabetic)
+    let is_hexadecimal = number == "0" && unit.starts_with(['x', 'X']);
+    number.parse::<f64>().is_ok() && unit.starts_with(char::is_alphabetic) && !is_hexadecimal
 }
 
 /// True for a number or an angle as [`angle`] reads it.

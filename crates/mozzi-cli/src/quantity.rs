@@ -24,9 +24,30 @@ const ELSEWHERE: [(&str, &str); 8] = [
     ("energy", "its parts: `mozzi compute MODEL kinetic-energy,potential-energy`"),
 ];
 
+/// Such names that begin others, as `velocity` begins `velocity_product`.
+const ALONE: [(&str, &str); 7] = [
+    ("manipulability", MANIPULABILITY),
+    ("manipulability_ellipsoid", MANIPULABILITY),
+    ("twist", TWIST),
+    ("velocity", TWIST),
+    ("acceleration", ACCELERATION),
+    ("classical_acceleration", ACCELERATION),
+    ("gravity_compensation", GRAVITY_COMPENSATION),
+];
+const MANIPULABILITY: &str =
+    "`mozzi plot ellipsoids MODEL --out FILE.svg` draws the ellipsoids, `mozzi compute MODEL J_b` has the Jacobian";
+const TWIST: &str = "a frame's twist is J θ̇ with `body-jacobian` or `space-jacobian`, (ω, v)";
+const ACCELERATION: &str =
+    "`frame-acceleration` is a frame's, `forward-dynamics` has the joints', `center-of-mass-acceleration` the robot's";
+const GRAVITY_COMPENSATION: &str =
+    "`gravity-forces` is g(θ), without springs; `mozzi simulate MODEL --torque gravity-compensation` applies both";
+
 /// The command for a name that is not a quantity.
 pub fn elsewhere(name: &str) -> Option<&'static str> {
     let plain = name.replace('-', "_");
+    if let Some((_, tip)) = ALONE.iter().find(|(known, _)| plain == *known) {
+        return Some(tip);
+    }
     let is_meant = |known: &str| plain == known || known.len() > 3 && plain.starts_with(known);
     ELSEWHERE.iter().find(|(known, _)| is_meant(known)).map(|(_, tip)| *tip)
 }

@@ -28,7 +28,8 @@ pub struct MeshArguments {
     /// Which meshes of the robot's file are shown, if they are found
     #[arg(long, value_name = "WHICH", default_value = "visual")]
     meshes: Which,
-    /// A folder above the meshes of the robot's file that lie outside of its own folder and package
+    /// A folder above the meshes of the robot's file that lie outside of its own folder and package; those that are
+    /// not found elsewhere are searched there
     #[arg(long, value_name = "FOLDER")]
     mesh_root: Option<PathBuf>,
     /// Allow an output of a xacro file that reads variables of the environment, or files outside of its folder and of

@@ -208,8 +208,13 @@ impl RobotArguments {
 fn gravity(text: &str) -> Result<[f64; 3]> {
     const BODIES: [(&str, f64); 4] = [("earth", 9.81), ("moon", 1.62), ("mars", 3.72), ("none", 0.0)];
     let down = |size: f64| [0.0, 0.0, -size];
-    match BODIES.iter().find(|(name, _)| *name == text.trim()) {
+    let is_name = text.trim().starts_with(char::is_alphabetic);
+    match BODIES.iter().find(|(name, _)| name.eq_ignore_ascii_case(text.trim())) {
         Some((_, size)) => Ok(down(*size)),
+        None if is_name && !text.contains(',') => {
+            let names = BODIES.map(|(name, _)| name).join(", ");
+            Err(Failure::wrong(format!("--gravity is `{text}`, expected a number, a vector X,Y,Z, or one of {names}")))
+        }
         None if !text.contains(',') => match number("--gravity", text)? {
             size if size < 0.0 => Err(Failure::wrong(format!(
                 "--gravity is {text}: one number is the size of gravity, which points down; expected {}, or the vector \

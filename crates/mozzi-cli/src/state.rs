@@ -165,7 +165,9 @@ impl WrenchArguments {
         let mut applied = self.tip.read(model)?;
         for text in &self.wrench {
             let Some((name, numbers)) = text.rsplit_once('=') else {
-                return Err(Failure::wrong(format!("--wrench is `{text}`, expected FRAME=mx,my,mz,fx,fy,fz")));
+                let of_tip = format!("; --tip-wrench {text} is the end effector's");
+                let remedy = if numbers::count(text) == WRENCH.len() { of_tip.as_str() } else { "" };
+                return Err(Failure::wrong(format!("--wrench is `{text}`, expected FRAME=mx,my,mz,fx,fy,fz{remedy}")));
             };
             let numbers = array(&format!("--wrench {name}"), numbers, WRENCH)?;
             applied.push((model.frame(name)?, Wrench::from_array(numbers)));

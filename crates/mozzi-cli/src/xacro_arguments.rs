@@ -8,7 +8,7 @@ pub struct XacroArguments {
     /// Value of an argument of a xacro file; repeatable
     #[arg(long = "xacro-arg", value_name = "NAME:=VALUE", value_parser = assignment)]
     values: Vec<(String, String)>,
-    /// Folder of a ROS package, for `$(find NAME)` in a xacro file; repeatable
+    /// Folder of a ROS package, for `$(find NAME)` in a xacro file and meshes at package://NAME; repeatable
     #[arg(long = "package", value_name = "NAME=DIR", value_parser = package)]
     packages: Vec<(String, PathBuf)>,
 }

@@ -113,3 +113,20 @@ fn refusals_tell_their_reason() {
     let module = text(&["derive", "two_link_planar", "M", "c", "g", "--as", "sympy"]);
     assert_eq!(module.matches("\nvalues = {").count(), 1, "{module}");
 }
+
+/// A joint of MJCF may miss the origin of its body: lengths are those between axes, not between bodies.
+#[test]
+fn lengths_are_between_axes() {
+    let body = |name: &str, x: &str, inner: &str| {
+        format!(
+            "<body name='{name}' pos='{x} 0 0'><joint name='{name}_joint' axis='0 0 1' pos='-0.4 0 0'/>\
+             <inertial pos='0 0 0' mass='2' diaginertia='0.1 0.1 0.1'/>{inner}</body>"
+        )
+    };
+    let robot = format!("<mujoco><worldbody>{}</worldbody></mujoco>", body("a", "0.4", &body("b", "0.7", "")));
+    let robot = crate::common::file(&folder("axes"), "axes.xml", &robot);
+    let page = text(&["derive", &robot, "M", "--as", "text"]);
+    assert!(page.contains("L₁ = 0.7 m: b_joint axis x relative to the axis before it"), "{page}");
+    assert!(page.contains("r₂ = 0.4 m: b centre of mass x relative to its axis"), "{page}");
+    assert!(page.contains("m₂(L₁² + 2r₂L₁ cos θ₂ + r₂²)") || page.contains("m₂(L₁² + 2L₁r₂ cos θ₂ + r₂²)"), "{page}");
+}

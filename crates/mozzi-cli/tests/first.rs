@@ -177,6 +177,50 @@ fn radians_that_look_like_degrees_are_questioned() {
     for fine in ["--q=0,-90deg,0,0,0,0", "--q=0,6.2,0,0,0,0"] {
         assert_eq!(said(&["compute", "ur5", "g", fine]), "");
     }
+    let note = said(&["compute", "ur5", "c", "--q=0,1,0,0,0,0", "--dtheta=0,90,0,0,0,0"]);
+    assert!(note.contains("--dtheta is in rad/s, and 9e1 is large"), "{note}");
+}
+
+#[test]
+fn tables_that_look_like_degrees_are_questioned() {
+    let place = folder("degrees");
+    let table = |name: &str, ending: &str, value: &str| {
+        let header: String = (1..=6).map(|k| format!(",theta_{k}{ending}")).collect();
+        file(&place, name, &format!("t{header}\n0,0,{value},90,0,90,0\n1,0,-90,90,0,90,0\n"))
+    };
+    let said = |arguments: &[&str]| String::from_utf8(mozzi(arguments).stderr).expect("text");
+    let (plain, named) = (table("a.csv", "", "-90"), table("b.csv", "_deg", "-90"));
+    let question =
+        "column `theta_2` is read in radians, and -90 rad are -14.3 turns; `theta_2_deg` is a name for degrees";
+    let svg = place.join("a.svg").display().to_string();
+    for arguments in
+        [&["compute", "ur5", "g", "--in", &plain][..], &["plot", "trajectory", "ur5", &plain, "--out", &svg]]
+    {
+        let note = said(arguments);
+        assert_eq!(note.matches("is read in radians").count(), 1, "{note}");
+        assert!(note.contains(question), "{note}");
+    }
+    assert!(!said(&["compute", "ur5", "g", "--in", &named]).contains("radians"));
+}
+
+#[test]
+fn first_guesses_of_values_have_tips() {
+    for (line, tip) in [
+        ("ik ur5 --position 0.4,0.2,0.5 --seed 0,-90,0,0,0,0", "--guess is the initial guess of θ"),
+        ("compute ur5 tau --wrench 0,0,0,0,0,1", "; --tip-wrench 0,0,0,0,0,1 is the end effector's"),
+        ("compute ur5 manipulability", "`mozzi plot ellipsoids MODEL"),
+        ("compute ur5 gravity-compensation", "`gravity-forces` is g(θ), without springs"),
+        ("compute ur5 fk --frame wrist_3", "no frame `wrist_3` (did you mean `wrist_3_link`?); this robot has"),
+        ("compute ur5 fk --frame TOOL0", "no frame `TOOL0` (did you mean `tool0`?); this robot has"),
+        ("compute ur5 g --gravity pluto", "expected a number, a vector X,Y,Z, or one of earth, moon, mars, none"),
+        ("compute ur5 g --q 0x10,0,0,0,0,0", "is `0x10`, expected a number\n"),
+    ] {
+        let words: Vec<&str> = line.split(' ').collect();
+        let (_, said) = complaint(&words);
+        assert!(said.contains(tip), "{line}: {said}");
+    }
+    let svg = folder("guesses").join("a.svg").display().to_string();
+    text(&["plot", "ellipsoids", "ur5", "--q", "0,-1,1,0,1,0", "--out", &svg]);
 }
 
 #[test]

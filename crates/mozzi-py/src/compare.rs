@@ -36,8 +36,14 @@ pub fn _compare(
         let found = waited(py, move || compare(&robot.get().robot().model, source, &options))?;
         return found.map(|c| report(&c)).map_err(of_comparison);
     }
-    let name: PathBuf = robot.extract()?;
-    let name = name.to_string_lossy();
+    let path: PathBuf = robot.extract()?;
+    let name = path.to_string_lossy();
+    if path.extension().is_some_and(|ending| ending == "json") {
+        let model = load::any(robot, policy, false, &load::Xacro::default())?;
+        let source = Source::written(&name, model.description()).map_err(of_comparison)?;
+        let found = waited(py, move || compare(&model, source, &options))?;
+        return found.map(|c| report(&c)).map_err(of_comparison);
+    }
     match load::loaded(py, &name, policy)? {
         Ok(loaded) => {
             let model = load::build(py, Ok(loaded), false)?;

@@ -5,6 +5,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyArithmeticError, PyOSError, PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use std::ffi::CString;
+use std::path::Path;
 
 create_exception!(
     mozzi,
@@ -118,16 +119,24 @@ pub fn place(index: usize, leading: &[usize]) -> String {
     place.join(", ")
 }
 
+/// An error of the system with a file: the subclass of OSError for its number, with the file's path.
+pub fn of_file(path: &Path, error: &std::io::Error) -> PyErr {
+    let text = error.to_string();
+    match error.raw_os_error() {
+        Some(number) => {
+            let words = text.split(" (os error").next().unwrap_or_default().to_string();
+            PyOSError::new_err((number, words, path.to_string_lossy().into_owned()))
+        }
+        None => PyOSError::new_err(format!("{}: {text}", path.display())),
+    }
+}
+
 /// An error of the loader, with its lines as `diagnostics`.
 pub fn of_loader(py: Python<'_>, error: mozzi_urdf::LoadError) -> PyErr {
     let text = error.to_string();
     match error {
         mozzi_urdf::LoadError::File { path, source } => match source.raw_os_error() {
-            Some(number) => {
-                let words = source.to_string();
-                let words = words.split(" (os error").next().unwrap_or_default().to_string();
-                PyOSError::new_err((number, words, path.to_string_lossy().into_owned())) // the subclass for the number
-            }
+            Some(_) => of_file(&path, &source),
             None => PyOSError::new_err(text),
         },
         mozzi_urdf::LoadError::Refused { diagnostics, .. } => {

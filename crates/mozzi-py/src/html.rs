@@ -5,14 +5,24 @@ use mozzi_report::escaped;
 use mozzi_report::text::scalar;
 use std::fmt::Write;
 
+/// The mass of all links, as `mozzi info` prints it, and that of the moving links if it differs.
+pub fn masses(model: &Model) -> String {
+    let total: f64 = model.description().links.iter().map(|link| link.inertia.mass).sum();
+    let moving = model.mass();
+    match (total - moving).abs() <= 1e-12 * total {
+        true => format!("{} kg", scalar(total)),
+        false => format!("{} kg, {} kg moving", scalar(total), scalar(moving)),
+    }
+}
+
 pub fn table(model: &Model) -> String {
     let (robot, mut text) = (model.description(), String::new());
     let base = if model.is_floating() { ", floating base" } else { "" };
-    let mass = scalar(model.mass());
+    let mass = masses(model);
     // writing to a String cannot fail
     let _ = write!(
         text,
-        "<table><caption>{}: {} joints, {mass} kg{base}</caption>",
+        "<table><caption>{}: {} joints, {mass}{base}</caption>",
         escaped(&robot.name),
         model.joint_names().len()
     );

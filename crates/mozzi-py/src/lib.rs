@@ -6,6 +6,7 @@ mod call;
 mod command_line;
 mod compare;
 mod conventions;
+mod counts;
 mod derivation;
 mod describe;
 mod environment;

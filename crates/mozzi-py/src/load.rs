@@ -1,9 +1,9 @@
 //! Loads robots from files, texts, names and the book's lists.
 
 use crate::array::{Numbers, wrong_shape};
-use crate::describe::pose;
 use crate::failure::{DynamicsWarning, LoadWarning, of_loader, of_model, warn};
 use mozzi::model::Base;
+use mozzi::spatial::NotAScrew;
 use mozzi::{Description, HomeFrames, Model, SE3, ScrewAxis, Screws, SpatialInertia};
 use mozzi_urdf::json;
 use mozzi_urdf::{Consequence, LoadError, Loaded, Policy, Settings, XacroArguments};
@@ -151,7 +151,7 @@ pub fn screws(
     let screws = (0..n)
         .map(|j| {
             ScrewAxis::from_array(std::array::from_fn(|row| S[row * n + j]))
-                .map_err(|error| PyValueError::new_err(format!("S_list, column {j}: {error}")))
+                .map_err(|error| PyValueError::new_err(format!("S_list, column {j}: {}", not_a_screw(error))))
         })
         .collect::<PyResult<Vec<_>>>()?;
     let home =
@@ -159,7 +159,10 @@ pub fn screws(
     let home = home
         .into_iter()
         .enumerate()
-        .map(|(k, M)| pose(M).map_err(|error| PyValueError::new_err(format!("M_list[{k}]: {error}"))))
+        .map(|(k, M)| {
+            let not_a_pose = |error| PyValueError::new_err(format!("M_list[{k}]: {error}"));
+            SE3::from_rounded_matrix(M).map_err(not_a_pose)
+        })
         .collect::<PyResult<Vec<SE3>>>()?;
     let inertias = matrices::<6>("G_list", G_list, n, "(n, 6, 6): a spatial inertia for each link")?;
     let inertias = inertias
@@ -181,6 +184,15 @@ pub fn screws(
         other => return Err(PyValueError::new_err(format!("axes is '{other}', expected 'space', 'body' or 'link'"))),
     };
     Description::from_screws(name, home, &inertias, screws).and_then(Description::build).map_err(of_model)
+}
+
+/// The error, with a remedy in Python's words.
+fn not_a_screw(NotAScrew { angular, linear }: NotAScrew) -> String {
+    let remedy = match angular > 0.0 && angular.is_finite() {
+        true => "; divide the column by ‖ω‖, then θ is in radians",
+        false => "",
+    };
+    format!("not a unit screw axis: ‖ω‖ = {angular} and ‖v‖ = {linear}, expected ‖ω‖ = 1, or ω = 0 and ‖v‖ = 1{remedy}")
 }
 
 fn matrices<const K: usize>(

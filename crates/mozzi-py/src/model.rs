@@ -11,7 +11,6 @@ use crate::threads::Threads;
 use mozzi::FrameId;
 use mozzi::quantities::Query;
 use mozzi_engine::{Engine, Refusal};
-use mozzi_report::text::scalar;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -273,10 +272,10 @@ impl PyModel {
         let base = if model.is_floating() { ", floating" } else { "" };
         let (robot, links) = (model.description(), model.description().links.len());
         format!(
-            "<mozzi.Model '{}': {} joints, {links} links, {} kg{base}>",
+            "<mozzi.Model '{}': {} joints, {links} links, {}{base}>",
             robot.name,
             model.joint_names().len(),
-            scalar(model.mass())
+            html::masses(model)
         )
     }
 

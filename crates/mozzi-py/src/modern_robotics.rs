@@ -37,9 +37,31 @@ fn matrix<'py, const R: usize, const C: usize>(py: Python<'py>, M: [[f64; C]; R]
     array(py, &[R, C], M.into_iter().flatten())
 }
 
+/// Digits may be truncated to this, as those of rotations.
+const TRUNCATED: f64 = 1e-3;
+
+/// Refuses a matrix with an upper left part other than [ω], such as a rotation.
+fn check_antisymmetric<const N: usize>(name: &str, W: &[[f64; N]; N]) -> PyResult<()> {
+    for i in 0..3 {
+        for j in i..3 {
+            let (x, y) = (W[i][j], W[j][i]);
+            if (x + y).abs() > TRUNCATED * x.abs().max(y.abs()).max(1.0) {
+                let expected = if i == j { "expected 0" } else { "expected opposite numbers" };
+                let found = match i == j {
+                    true => format!("entry ({i}, {i}) is {x}"),
+                    false => format!("entries ({i}, {j}) and ({j}, {i}) are {x} and {y}"),
+                };
+                return Err(PyValueError::new_err(format!("{name}: {found}, {expected}: [ω] is antisymmetric")));
+            }
+        }
+    }
+    Ok(())
+}
+
 #[pyfunction]
 fn exp3<'py>(py: Python<'py>, so3mat: Given<'_, 'py>) -> Found<'py> {
     let W = Numbers::matrix::<3, 3>("so3mat", so3mat, "(3, 3)")?;
+    check_antisymmetric("so3mat", &W)?;
     matrix(py, SO3::exp(Vec3([W[2][1], W[0][2], W[1][0]])).matrix().rows())
 }
 
@@ -53,6 +75,10 @@ fn log3<'py>(py: Python<'py>, R: Given<'_, 'py>) -> Found<'py> {
 #[pyfunction]
 fn exp6<'py>(py: Python<'py>, se3mat: Given<'_, 'py>) -> Found<'py> {
     let V = Numbers::matrix::<4, 4>("se3mat", se3mat, "(4, 4)")?;
+    check_antisymmetric("se3mat", &V)?;
+    if let Some(x) = V[3].iter().find(|x| x.abs() > TRUNCATED) {
+        return Err(PyValueError::new_err(format!("se3mat: the last row has {x}, expected zeros, as in [V]")));
+    }
     let twist = Twist { w: Vec3([V[2][1], V[0][2], V[1][0]]), v: Vec3([V[0][3], V[1][3], V[2][3]]) };
     matrix(py, SE3::exp(twist).to_matrix())
 }

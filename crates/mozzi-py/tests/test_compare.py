@@ -56,6 +56,21 @@ def test_a_robot_of_one_velocity(tmp_path):
 
 
 @both
+@pytest.mark.parametrize("of_json", [False, True])
+def test_a_robot_of_lists(tmp_path, of_json):
+    screws = np.array([[0, 0, 1, 0, 0, 0], [0, 1, 0, 0, 0, 0.7]]).T
+    M = np.eye(4)
+    M[0, 3] = 0.5
+    robot = mozzi.Model.from_screws([M, M, M], [np.diag([0.1, 0.2, 0.3, 2, 2, 2])] * 2, screws)
+    robot.save(tmp_path / "lists.json")
+    found = mozzi.compare(tmp_path / "lists.json" if of_json else robot, states=2)
+    assert found.agrees, str(found)
+    found = mozzi.compare(robot.with_gravity([0.0, -9.81, 0.0]), states=2)
+    causes = found.libraries["Pinocchio"]["comparison"]["causes"]
+    assert found.explained and [cause["kind"] for cause in causes] == ["gravity"], str(found)
+
+
+@both
 def test_a_file_that_mozzi_refuses(tmp_path):
     text = (MODELS / "ur5.urdf").read_text().replace("8.393", "-8.393")
     (tmp_path / "heavy.urdf").write_text(text)

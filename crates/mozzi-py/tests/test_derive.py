@@ -78,3 +78,39 @@ def test_what_cannot_be_derived_is_refused():
         arm.derive("mass_matrix", equal="all")
     changed = arm.with_payload("tip", np.diag([0.0, 0, 0, 0.3, 0.3, 0.3]))
     assert "m₂_tip" in str(changed.derive("mass_matrix"))
+
+
+def of_lists(L1, r1=None, alpha=0.0):
+    """The planar arm of the book's lists, with frames at the centres of mass; the second link's is turned by alpha."""
+    r1, L2, r2 = L1 if r1 is None else r1, 0.8, 0.3
+    c, s = np.cos(alpha), np.sin(alpha)
+    M1, M2, tip = np.eye(4), np.eye(4), np.eye(4)
+    M2[:2, :2], M2[0, 3] = [[c, -s], [s, c]], L1 + r2
+    M1[0, 3], tip[0, 3] = r1, L2 - r2
+    home = [M1, np.linalg.inv(M1) @ M2, tip]
+    screws = np.array([[0, 0, 1, 0, 0, 0], [0, 0, 1, 0, -L1, 0.0]]).T
+    inertias = [np.diag([0.1, 0.2, 0.3, 2, 2, 2]), np.diag([0.1, 0.15, 0.2, 1.5, 1.5, 1.5])]
+    return mozzi.Model.from_screws(home, inertias, screws).with_gravity([0.0, -9.81, 0.0])
+
+
+@pytest.mark.parametrize("alpha", [0.0, 0.4])
+def test_lengths_of_lists_are_between_axes(alpha, random):
+    theta, dtheta, ddtheta = random.uniform(-2, 2, (3, 2))
+    arm = of_lists(1.0, 0.4, alpha)
+    assert {"L1": 1.0}.items() <= arm.derive("M").values.items()
+    for name, state in [("mass_matrix", (theta,)), ("gravity_forces", (theta,)), ("velocity_product", (theta, dtheta)),
+                        ("regressor", (theta, dtheta, ddtheta))]:  # fmt: skip
+        scope, found = {}, arm.derive(name)
+        exec(found.python(), scope)
+        for lengths in [(1.0, 0.4), (1.2, 0.4), (1.2, 0.7)]:
+            given = {symbol: x for symbol, x in zip(("L1", "r1"), lengths) if symbol in found.values}
+            expected = getattr(of_lists(*lengths, alpha), name)(*state)
+            assert np.allclose(scope[name](*state, **given), expected, atol=1e-12), (name, lengths)
+
+
+def test_equal_lengths_of_lists_are_the_textbooks(random):
+    arm, theta, scope = of_lists(1.0), random.uniform(-2, 2, 2), {}
+    M = arm.derive("M", equal="link")
+    assert "m₁L₁²" in str(M) and "joint2 axis x relative to the axis before it" in str(M), str(M)
+    exec(M.python(), scope)
+    assert np.allclose(scope["mass_matrix"](theta, L1=1.2), of_lists(1.2).mass_matrix(theta), atol=1e-12)

@@ -221,3 +221,47 @@ def test_loading_by_name(ur5):
     for name in ["gravity", "position_limits", "velocity_limits", "effort_limits"]:
         with pytest.raises(ValueError, match="read-only"):  # a copy: the change would be lost
             getattr(ur5, name)[0] = 0
+
+
+def test_counts_and_sizes(ur5):
+    with refused(TypeError, "steps is 0.001, expected an int, the number of steps; a time step dt is steps="):
+        ur5.simulate(ZERO, ZERO, 1.0, 0.001)
+    with refused(ValueError, "steps is -5, expected at least 1"):
+        ur5.simulate(ZERO, ZERO, 1.0, -5)
+    with refused(ValueError, "record_every is -1, expected at least 1"):
+        ur5.simulate(ZERO, ZERO, 1.0, 5, record_every=-1)
+    with refused(ValueError, "steps is 1000000000000, expected at most 1e9"):
+        ur5.simulate(ZERO, ZERO, 1e9, 10**12)
+    with refused(ValueError, "the motion takes 216 GB of memory (1000000001 rows), expected at most 16 GB; record_every"):
+        ur5.simulate(ZERO, ZERO, 1e6, 10**9)
+    with refused(ValueError, "iterations is -1, expected at least 1"):
+        mozzi.InverseKinematics(ur5, iterations=-1)
+
+
+def test_python_words(ur5):
+    eye, I, S = np.eye(4), np.eye(6), np.array([[0, 0, 2, 0, 0, 0.0]]).T
+    with refused(ValueError, "S_list, column 0: not a unit screw axis: ‖ω‖ = 2 and ‖v‖ = 0, expected ‖ω‖ = 1, or ω = 0"):
+        mozzi.Model.from_screws([eye] * 2, [I], S)
+    with refused(ValueError, "M_list[1]: not a configuration: the last row is [1.0, 1.0, 1.0, 1.0]"):
+        mozzi.Model.from_screws([eye, np.vstack([eye[:3], np.ones(4)])], [I], S / 2)
+    with refused(ValueError, "G_list[0]: not a spatial inertia: entry (0, 0) is NaN, expected a finite number"):
+        mozzi.Model.from_screws([eye] * 2, [I * np.nan], S / 2)
+    with refused(ValueError, "position: (NaN, 0, 0), expected finite numbers, m"):
+        mozzi.InverseKinematics(ur5).solve(ZERO, position=[np.nan, 0, 0])
+    with refused(TypeError, "robot is a str, expected a mozzi.Model, and Pinocchio's model after it"):
+        mozzi.conventions.Pinocchio("ur5")
+
+
+def test_payloads_and_gravity_in_short(ur5):
+    loaded, G = ur5.with_payload("tool0", 5.0, [0, 0, 0.1]), np.zeros((6, 6))
+    G[3:, 3:] = 5.0 * np.eye(3)
+    G[:3, :3] = np.diag([0.05, 0.05, 0])
+    G[1, 3] = G[3, 1] = 0.5
+    G[0, 4] = G[4, 0] = -0.5
+    theta = [0.1, -0.7, 0.9, 0.4, 1.1, 0.2]
+    assert np.allclose(loaded.mass_matrix(theta), ur5.with_payload("tool0", G).mass_matrix(theta))
+    with refused(ValueError, "center_of_mass is given, expected None: a spatial inertia contains"):
+        ur5.with_payload("tool0", G, [0, 0, 0.1])
+    assert ur5.with_gravity(1.62).gravity.tolist() == [0, 0, -1.62]
+    with refused(ValueError, "gravity is -9.81, expected 9.81, which points down, or (0, 0, -9.81)"):
+        ur5.with_gravity(-9.81)

@@ -129,7 +129,7 @@ def test_errors_of_a_function_are_its_own(panda):
         ({"pose": np.eye(3)}, r"pose has shape \(3, 3\), expected \(..., 4, 4\)"),
         ({"position": [0.1]}, r"position has shape \(1,\), expected \(..., 3\): m"),
         ({"orientation": [np.eye(3), 2 * np.eye(3)]}, r"orientation\[1\]: "),
-        ({"position": [0, 0, np.nan]}, "the goal is .*NaN.*, expected finite numbers"),
+        ({"position": [0, 0, np.nan]}, "position: .*NaN.*, expected finite numbers"),
         ({"position": [0, 0, 0], "near": [0.0]}, r"near has shape \(1,\), expected \(..., 6\): one value per joint"),
         ({"position": [0, 0, 0], "near": HOME, "minimize": len}, "near and minimize are both given"),
     ],

@@ -233,3 +233,26 @@ def test_errors_name_the_list(lists):
     M[1, 0, 3] = np.inf
     with pytest.raises(ValueError, match="the list of home frames is not finite in number 2, expected finite numbers"):
         mr.MassMatrix(theta, M, G, S)
+
+
+def test_exponentials_refuse_other_matrices():
+    turned = mr.MatrixExp3(mr.VecToso3([0.1, 0.2, 0.3]))
+    for matrix, what in [(turned, "entry (0, 0) is 0.9"), (np.ones((3, 3)), "entry (0, 0) is 1, expected 0"),
+                         (np.abs(mr.VecToso3([0.1, 0.2, 0.3])), "entries (0, 1) and (1, 0) are 0.3 and 0.3")]:  # fmt: skip
+        with pytest.raises(ValueError, match="so3mat: " + re.escape(what)):
+            mr.MatrixExp3(matrix)
+    with pytest.raises(ValueError, match="se3mat: entry"):
+        mr.MatrixExp6(np.ones((4, 4)))
+    last = mr.VecTose3([0.1, 0.2, 0.3, 1, 2, 3])
+    last[3, 3] = 1.0
+    with pytest.raises(ValueError, match="se3mat: the last row has 1, expected zeros"):
+        mr.MatrixExp6(last)
+    rounded = np.round(mr.VecToso3([0.1234567, 0.2, 0.3]), 4)
+    assert np.allclose(mr.MatrixExp3(rounded), mr.MatrixExp3(mr.VecToso3([0.1235, 0.2, 0.3])))
+
+
+def test_a_guess_has_a_number_for_each_screw():
+    S = np.array([[0, 0, 1, 0, 0, 0], [0, 0, 1, 0, -1.0, 0]]).T
+    for solve in (mr.IKinSpace, mr.IKinBody):
+        with pytest.raises(ValueError, match=re.escape("thetalist0 has shape (1,), expected (2,)")):
+            solve(S, np.eye(4), np.eye(4), [0.1], 1e-3, 1e-3)

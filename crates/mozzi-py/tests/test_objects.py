@@ -199,9 +199,29 @@ def test_a_robot_is_not_saved_as_another(tmp_path):
     ur5 = mozzi.models.ur5()
     with pytest.raises(ValueError, match="ends in `.usd`, expected .urdf, .xml"):
         ur5.save(tmp_path / "robot.usd")
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        ur5.save(tmp_path / "nowhere" / "robot.urdf")
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        ur5.report(tmp_path / "nowhere" / "page.html")
     with pytest.raises(ValueError, match="json can express all of it"):
         ur5.with_gravity([1.0, 0.0, -9.0]).save(tmp_path / "robot.urdf")
     assert not list(tmp_path.iterdir())
+
+
+def test_axes_that_miss_their_frames_are_saved(tmp_path):
+    arm = mozzi.Model.from_screws([np.eye(4)] * 2, [np.eye(6)], np.array([[0, 0, 1, 0, -0.5, 0]]).T)
+    with pytest.warns(mozzi.LoadWarning, match="cannot express the choice of the end effector, `end_effector`"):
+        arm.save(tmp_path / "arm.urdf")
+    again = mozzi.Model.load(tmp_path / "arm.urdf")
+    assert np.allclose(again.mass_matrix([0.3]), arm.mass_matrix([0.3]))
+    assert np.allclose(again.forward_kinematics([0.3], "end_effector"), arm.forward_kinematics([0.3]))
+
+
+def test_both_masses_are_shown(ur5):
+    moving = ur5.mass
+    assert repr(ur5) == f"<mozzi.Model 'ur5': 6 joints, 8 links, 20.9939 kg, {moving} kg moving>"
+    assert f"6 joints, 20.9939 kg, {moving} kg moving</caption>" in ur5._repr_html_()
+    assert repr(mozzi.models.two_link_planar()).endswith(", 3 kg>")
 
 
 def test_saving_tells_what_mujoco_refuses(tmp_path):

@@ -3,7 +3,7 @@
 use crate::base64;
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use mozzi::{Model, SE3};
-use mozzi_urdf::geometry::{Form, Geometry, Purpose, Shape, check_mesh, geometry_with, locate, parse};
+use mozzi_urdf::geometry::{Form, Geometry, MeshFolders, Purpose, Shape, check_mesh, geometry_with, locate, parse};
 use mozzi_urdf::{LoadError, XacroArguments, files, visible};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -60,8 +60,8 @@ impl Drawing {
         Self::of_file_below(name_or_path, &XacroArguments::default(), meshes, None)
     }
 
-    /// As [`of_file`](Self::of_file), with xacro arguments and the folder `mesh_root`, which may contain meshes outside
-    /// of the robot's folder, such as in a folder next to it.
+    /// As [`of_file`](Self::of_file), with xacro arguments, whose packages may contain meshes, and the folder
+    /// `mesh_root`, which may contain meshes outside of the robot's folder, such as in a folder next to it.
     ///
     /// # Errors
     /// As [`of_file`](Self::of_file); [`LoadError::Refused`] if xacro cannot expand the file.
@@ -71,7 +71,8 @@ impl Drawing {
         meshes: Meshes,
         mesh_root: Option<&Path>,
     ) -> Result<Self, LoadError> {
-        Ok(Self::new(geometry_with(name_or_path, arguments)?, Path::new(name_or_path), meshes, mesh_root))
+        let folders = MeshFolders { root: mesh_root, packages: &arguments.packages };
+        Ok(Self::new(geometry_with(name_or_path, arguments)?, Path::new(name_or_path), meshes, folders))
     }
 
     /// The drawing of a text, such as one from a pipe: without meshes, since it has no folder.
@@ -80,7 +81,7 @@ impl Drawing {
         let all = found.shapes.len();
         found.shapes.retain(|shape| !matches!(shape.form, Form::Mesh { .. }));
         let meshless = all - found.shapes.len();
-        let mut drawing = Self::new(found, Path::new(file_name), meshes, None);
+        let mut drawing = Self::new(found, Path::new(file_name), meshes, MeshFolders::default());
         if meshless > 0 && meshes != Meshes::None {
             drawing
                 .notes
@@ -89,10 +90,10 @@ impl Drawing {
         drawing
     }
 
-    fn new(Geometry { shapes, left_out, .. }: Geometry, file: &Path, meshes: Meshes, root: Option<&Path>) -> Self {
+    fn new(Geometry { shapes, left_out, .. }: Geometry, file: &Path, meshes: Meshes, folders: MeshFolders<'_>) -> Self {
         let mut drawing = Drawing { notes: left_out.iter().map(ToString::to_string).collect(), ..Drawing::default() };
         for shape in chosen(shapes, meshes) {
-            if drawing.has_mesh(&shape.form, file, root) {
+            if drawing.has_mesh(&shape.form, file, folders) {
                 drawing.shapes.push(shape);
             }
         }
@@ -100,14 +101,14 @@ impl Drawing {
     }
 
     /// Reads the mesh of a form, if it has one; returns false, with a note, if that fails.
-    fn has_mesh(&mut self, form: &Form, robot_file: &Path, root: Option<&Path>) -> bool {
+    fn has_mesh(&mut self, form: &Form, robot_file: &Path, folders: MeshFolders<'_>) -> bool {
         let Form::Mesh { file, .. } = form else { return true };
         if let Some(is_read) = self.tried.get(file) {
             return *is_read;
         }
         let read = match self.bytes > MOST_OF_ALL {
             true => Err(format!("mesh {}: all meshes together have more than {MOST_OF_ALL} bytes", visible(file))),
-            false => read(robot_file, file, root),
+            false => read(robot_file, file, folders),
         };
         self.tried.insert(file.clone(), read.is_ok());
         match read {
@@ -179,12 +180,12 @@ fn chosen(shapes: Vec<Shape>, meshes: Meshes) -> Vec<Shape> {
 }
 
 /// The format of a mesh, its gzipped file and the size of the file, or the reason why it is omitted.
-fn read(robot_file: &Path, address: &str, root: Option<&Path>) -> Result<(&'static str, Vec<u8>, u64), String> {
+fn read(robot_file: &Path, address: &str, folders: MeshFolders<'_>) -> Result<(&'static str, Vec<u8>, u64), String> {
     let ending = Path::new(address).extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let Some(&format) = FORMATS.iter().find(|format| ending.as_deref() == Some(**format)) else {
         return Err(format!("mesh {}: is no .stl, .obj or .dae", visible(address)));
     };
-    let path = locate(robot_file, address, root).map_err(|error| error.to_string())?;
+    let path = locate(robot_file, address, folders).map_err(|error| error.to_string())?;
     let place = visible(&format!("mesh {address}: {}", path.display()));
     let cannot = |error: std::io::Error| format!("{place} cannot be read: {error}");
     let bytes = files::read(&path, MOST_BYTES).map_err(cannot)?;

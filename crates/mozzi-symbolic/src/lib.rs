@@ -23,6 +23,7 @@ mod kernel;
 mod laurent;
 mod letters;
 mod minors;
+mod offsets;
 mod order;
 mod parameters;
 mod point;

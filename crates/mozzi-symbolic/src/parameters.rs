@@ -2,6 +2,7 @@
 
 use crate::atom::{Atom, Class, Id, Name};
 use crate::letters::{plain_name, printable};
+use crate::offsets::{Offsets, with_offset};
 use crate::rational::Rational;
 use crate::read::{At, NotRead, Part, agree, read_urdf};
 use crate::rotation::{exact, exact_axis, is_short};
@@ -87,6 +88,8 @@ pub(crate) struct Parameters {
     joints: HashMap<String, usize>,
     /// The coordinates ≠ 0 of each joint's origin and link's centre of mass.
     coordinates: HashMap<(String, bool), usize>,
+    /// Lengths are between axes where link frames are not on them.
+    offsets: Offsets,
     is_gravity_along_axis: bool,
     pub legend: Vec<Meaning>,
     /// Names of the legend in code.
@@ -118,6 +121,7 @@ impl Parameters {
         };
         let carrier: HashMap<String, usize> =
             robot.links.iter().map(|link| (link.name.clone(), carrier_of(&link.name))).collect();
+        let offsets = if symbols.lengths { Offsets::of(robot) } else { Offsets::default() };
         let mut coordinates = HashMap::new();
         let mut count = |name: &str, is_joint: bool, p: Vec3| {
             let count = p.0.iter().filter(|x| **x != 0.0).count();
@@ -125,7 +129,7 @@ impl Parameters {
             count > 0
         };
         let mut on_carrier = vec![0; joints.len() + 1];
-        let has_length: Vec<bool> = robot.joints.iter().map(|j| count(&j.name, true, j.origin.p)).collect();
+        let has_length: Vec<bool> = robot.joints.iter().map(|j| count(&j.name, true, offsets.origin(j))).collect();
         for (joint, _) in robot.joints.iter().zip(&has_length).filter(|(_, has)| **has) {
             on_carrier[carrier[&joint.parent]] += 1;
         }
@@ -137,7 +141,7 @@ impl Parameters {
         let lengths = lengths.collect();
         let mut bodies_on = vec![0; joints.len() + 1];
         for link in &robot.links {
-            count(&link.name, false, link.inertia.mc);
+            count(&link.name, false, offsets.center(link));
             bodies_on[carrier[&link.name]] += usize::from(link.inertia.mass != 0.0);
         }
         let body = |link: &mozzi::model::description::Link| {
@@ -152,6 +156,7 @@ impl Parameters {
             lengths,
             joints,
             coordinates,
+            offsets,
             is_gravity_along_axis: robot.gravity.iter().filter(|x| **x != 0.0).count() == 1,
             legend: Vec::new(),
             taken: HashSet::new(),
@@ -182,6 +187,8 @@ impl Parameters {
         for (new, frame) in read.frames.iter_mut().zip(&robot.frames) {
             new.T.R = exact(frame.T.R);
         }
+        let offsets = self.offsets.clone();
+        let mut exactly = offsets.exact(&read);
         let mut number = |name: &str, part: Part, x: f64| {
             let text = format!("{}", fifteen_digits(x));
             self.number(At { name, part }, &text).ok_or_else(|| NotRead(format!("{name}: the number {x}")))
@@ -189,12 +196,29 @@ impl Parameters {
         for (k, x) in robot.gravity.iter().enumerate() {
             read.gravity[k] = number("gravity", Part::Gravity(k), *x)?;
         }
-        for (new, joint) in read.joints.iter_mut().zip(&robot.joints) {
+        let mut lengths = Vec::new();
+        for joint in &robot.joints {
+            let mut p = Vec3::zero();
+            for (k, x) in offsets.origin(joint).0.into_iter().enumerate() {
+                p.0[k] = number(&joint.name, Part::Origin(k), x)?;
+            }
+            lengths.push(p);
+        }
+        for link in &robot.links {
+            let Some(d) = offsets.of_center(link) else { continue };
+            let mut moved = Vec3::zero();
+            for (k, x) in d.0.into_iter().enumerate() {
+                moved.0[k] = number(&link.name, Part::Center(k), x)?;
+            }
+            exactly.insert(link.name.clone(), moved);
+            let joint = read.joints.iter_mut().find(|joint| joint.child == link.name);
+            joint.into_iter().for_each(|joint| joint.kind = with_offset(joint.kind, moved));
+        }
+        let offset = |link: &str| exactly.get(link).copied().unwrap_or(Vec3::zero());
+        for ((new, joint), p) in read.joints.iter_mut().zip(&robot.joints).zip(lengths) {
             let name = joint.name.as_str();
             new.origin.R = exact(joint.origin.R);
-            for k in 0..3 {
-                new.origin.p.0[k] = number(name, Part::Origin(k), joint.origin.p.0[k])?;
-            }
+            new.origin.p = p - offset(&joint.parent) + new.origin.R * offset(&joint.child);
             new.damping = number(name, Part::Damping, joint.damping)?;
             new.friction = number(name, Part::Friction, joint.friction)?;
             new.stiffness = number(name, Part::Stiffness, joint.stiffness)?;
@@ -206,9 +230,10 @@ impl Parameters {
             let T = SE3 { R: SO3::identity(), p: c };
             let at_c = G.congruence(T.Ad());
             let mut center = Vec3::zero();
-            for k in 0..3 {
-                center.0[k] = number(name, Part::Center(k), c.0[k])?;
+            for (k, x) in offsets.center(link).0.into_iter().enumerate() {
+                center.0[k] = number(name, Part::Center(k), x)?;
             }
+            center = center - offset(name);
             let size = [G.I.xx, G.I.yy, G.I.zz].into_iter().fold(0.0, f64::max);
             let I = at_c.I;
             let mut entry =
@@ -274,6 +299,7 @@ impl Parameters {
     fn symbol(&mut self, at: At, name: Name, class: Class, value: Rational, unit: &'static str) -> Symbol {
         let (size, is_negative) = (value.abs(), value.is_negative());
         let place = format!("{} {}", printable(at.name), describe(at.part));
+        let place = self.offsets.describe(at).unwrap_or(place);
         let is_equal = |known: &&mut Meaning| {
             let is_near = match self.equal {
                 Equal::Separate => known.places.contains(&place), // one number of two readings

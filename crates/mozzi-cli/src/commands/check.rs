@@ -36,7 +36,8 @@ pub struct CheckArguments {
     /// Write the proposals into the files, and nothing else; - is written to standard output
     #[arg(long)]
     apply: bool,
-    /// A folder above the meshes of the robot's file that lie outside of its own folder and package
+    /// A folder above the meshes of the robot's file that lie outside of its own folder and package; those that are
+    /// not found elsewhere are searched there
     #[arg(long, value_name = "FOLDER")]
     mesh_root: Option<PathBuf>,
     #[command(flatten)]

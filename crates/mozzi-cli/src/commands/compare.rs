@@ -139,7 +139,7 @@ fn source(arguments: &CompareArguments, robot: &Description) -> Result<Source> {
     }
     let text = input::robot_text().map_err(|error| input::cannot(name, &error))?;
     if mozzi_urdf::sdf::is_sdf(&String::from_utf8_lossy(text)) {
-        return Ok(Source::written(input::name(name), &mozzi_urdf::expressible(robot))?);
+        return Ok(Source::written(input::name(name), robot)?);
     }
     let expansion = expanded(input::name(name), text, arguments.policy.settings())?;
     Ok(Source::of_text(input::name(name), &expansion.unwrap_or_else(|| String::from_utf8_lossy(text).into_owned())))

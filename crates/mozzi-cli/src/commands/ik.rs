@@ -23,6 +23,11 @@ const COLUMNS: [&str; 5] = ["reached", "angle", "distance", "starts", "iteration
 
 const NO_GOAL: &str = "the goal is missing, expected --position, --rpy or --quaternion, or --in FILE.csv";
 
+fn seed(text: &str) -> Result<u64, String> {
+    let hint = if text.contains([',', '.']) { "; --guess is the initial guess of θ" } else { "" };
+    text.parse().map_err(|_| format!("expected a whole number, the seed of random positions{hint}"))
+}
+
 #[derive(Args, Debug)]
 pub struct IkArguments {
     #[command(flatten)]
@@ -59,7 +64,7 @@ pub struct IkArguments {
     #[arg(long, value_name = "K", default_value_t = Options::default().starts)]
     starts: usize,
     /// Seed of the random positions
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     seed: u64,
     /// Ignore joint limits
     #[arg(long)]
@@ -191,8 +196,9 @@ impl IkArguments {
             None => Ok(text),
             Some(line) => {
                 failure::note(&format!(
-                    "{} of the poses were not reached, the first in line {line} of {file}",
-                    missed.len()
+                    "{} of the poses {} not reached, the first in line {line} of {file}",
+                    missed.len(),
+                    if missed.len() == 1 { "was" } else { "were" },
                 ));
                 Err(Failure::Answered(text))
             }

@@ -76,7 +76,7 @@ struct EllipsoidArguments {
     #[command(flatten)]
     robot: RobotArguments,
     /// Positions θ, rad or m, or the name of a state; may be repeated [default: the robot's start, else joints at 0]
-    #[arg(long, value_name = "θ1,θ2,…")]
+    #[arg(long, visible_alias = "q", aliases = ["qpos", "positions"], value_name = "θ1,θ2,…")]
     theta: Vec<String>,
     /// Plane of {s} to project on
     #[arg(long, value_name = "PLANE", default_value = "xz")]

@@ -4,6 +4,7 @@ use super::check::CheckArguments;
 use crate::failure::{self, Failure, Result};
 use crate::input;
 use crate::output::{self, Output};
+use crate::robot_json;
 use mozzi_urdf::fix::{self, Proposal};
 use mozzi_urdf::{EditError, Settings};
 use serde_json::json;
@@ -14,6 +15,10 @@ use std::io::Write;
 pub fn run(arguments: &CheckArguments, models: &[String], is_json: bool, settings: &Settings) -> Result<String> {
     let (mut said, density, mesh_root) = (String::new(), arguments.density()?, arguments.mesh_root()?);
     for name in models {
+        if robot_json::is_json(name) {
+            let shown = input::name(name);
+            return Err(Failure::wrong(format!("{shown} cannot be repaired: only URDF is repaired, and this is JSON")));
+        }
         let text = input::robot_file(name)?;
         let found = match density {
             Some(density) => fix::estimates(name, &text, density, mesh_root, settings),
@@ -21,7 +26,9 @@ pub fn run(arguments: &CheckArguments, models: &[String], is_json: bool, setting
         };
         let found = found.map_err(|error| match error {
             EditError::Load(error) => Failure::from(error),
-            other => Failure::wrong(format!("{}: {other}", input::name(name))),
+            EditError::Unsupported(why) => {
+                Failure::wrong(format!("{} cannot be repaired: {}", input::name(name), why.reasons.join("; ")))
+            }
         })?;
         let (shown, proposals) = (input::name(name), &found.proposals);
         let mut lines: String = proposals.iter().map(|proposal| line(shown, proposal, is_json)).collect();

@@ -14,6 +14,7 @@ mod word;
 mod wrench;
 
 pub use entries::{Force, IS_CURRENT, Locked, holds_names, is_alike};
+pub use show::POSITION;
 pub use time::Time;
 
 use crate::columns;

@@ -4,6 +4,9 @@ use super::{Column, GROUPS, Header, Role, Time, columns};
 use crate::tables::samples::Row;
 use mozzi::Model;
 
+/// The meaning of a position's column.
+pub const POSITION: &str = "position θ";
+
 /// The meaning of every column.
 pub fn rows(
     header: &Header,
@@ -25,7 +28,7 @@ pub fn rows(
             Role::Value(group, entry) => {
                 let joint = columns::entries(model, GROUPS[*group]).get(*entry).copied().unwrap_or_default();
                 let factor = groups[*group].as_ref().and_then(|list| list[*entry]).map_or(1.0, |(_, factor)| factor);
-                let meaning = ["position θ", "velocity θ̇", "acceleration θ̈", "force τ"];
+                let meaning = [POSITION, "velocity θ̇", "acceleration θ̈", "force τ"];
                 let meaning = meaning.get(*group).copied().unwrap_or(GROUPS[*group]);
                 (meaning.to_string(), unit(factor, *group), joint.to_string())
             }

@@ -12,8 +12,8 @@ const SPARSE: f64 = 0.05;
 const REACH: f64 = 3.0;
 
 /// Removes tables and rows without numbers. If some columns were logged at other times, they are interpolated at the
-/// times of the first position.
-pub fn join(samples: &mut Samples, model: &Model) -> Result<()> {
+/// times of the first position. `remedy` ends the error for a table without positions.
+pub fn join(samples: &mut Samples, model: &Model, remedy: &str) -> Result<()> {
     let file = samples.file.clone();
     let is_empty = |table: &Vec<f64>| table.iter().all(|x| x.is_nan());
     for (name, what) in [("dtheta", "velocities"), ("ddtheta", "accelerations"), ("tau", "forces")] {
@@ -36,9 +36,7 @@ pub fn join(samples: &mut Samples, model: &Model) -> Result<()> {
     if rows.is_empty() {
         let why = match samples.tables.contains_key("theta") {
             true => format!("{file} has no row with numbers of the robot's joints"),
-            false => format!(
-                "{file}: no column is a position of the robot's joints, such as q1; --columns shows how each is read"
-            ),
+            false => format!("{file}: no column is a position of the robot's joints, such as q1{remedy}"),
         };
         return Err(Failure::wrong(why));
     }

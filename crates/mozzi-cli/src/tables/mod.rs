@@ -4,6 +4,7 @@ pub mod array;
 #[cfg(feature = "arrow")]
 pub mod arrow;
 mod bound;
+mod degrees;
 pub mod format;
 pub mod join;
 pub mod motion;

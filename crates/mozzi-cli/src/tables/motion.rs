@@ -1,6 +1,7 @@
 //! A table of a motion over time, for `simulate --follow`, `plot` and `view`: read and mended as `identify` reads logs.
 
 use super::How;
+use super::degrees;
 use super::join::join;
 use super::samples::Samples;
 use crate::failure::{self, Failure, Result};
@@ -20,10 +21,11 @@ const SLOW: f64 = 0.01;
 /// Leaves out rows without numbers and repeated ones, converts times to seconds, unwraps positions, and counts times
 /// from the first row if that is farther from 0 than the motion is long.
 pub fn mended(mut samples: Samples, model: &Model) -> Result<Samples> {
+    degrees::question(&samples, model);
     if samples.t.is_none() || samples.count == 0 {
         return Ok(samples);
     }
-    join(&mut samples, model)?;
+    join(&mut samples, model, "")?;
     leave_out(&mut samples)?;
     clock(&mut samples, model)?;
     let file = samples.file.clone();

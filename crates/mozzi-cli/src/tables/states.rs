@@ -1,6 +1,7 @@
 //! The states of a file, as tables by rows.
 
 use super::array::tuple;
+use super::degrees;
 use super::format::Format;
 use super::join::join;
 use super::npy::Header;
@@ -42,8 +43,9 @@ impl<T: Precision> States<T> {
             },
             _ => read::read(file, model)?,
         };
+        degrees::question(&samples, model);
         if is_bag(file) {
-            join(&mut samples, model)?; // an arm's joints may come in several messages
+            join(&mut samples, model, "")?; // an arm's joints may come in several messages
         }
         let missing = |samples: &Samples, name: &str| {
             let what = match format {

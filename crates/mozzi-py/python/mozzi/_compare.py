@@ -63,8 +63,8 @@ def compare(
     Parameters
     ----------
     robot : str, path or Model
-        A file of URDF or MJCF, or the name of an embedded robot. A ``Model`` is written as URDF for the other
-        libraries, and refused if URDF cannot express it.
+        A file of URDF, MJCF or mozzi's JSON, or the name of an embedded robot. A ``Model``, or that of JSON, is
+        written as URDF for the other libraries, and refused if URDF cannot express it.
     states : int
         Number of random states within the joints' limits.
     seed : int

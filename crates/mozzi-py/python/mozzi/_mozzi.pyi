@@ -226,7 +226,7 @@ class Model:
         """Return the book's lists of this robot: home frames, screw axes and spatial inertias of its N moving links."""
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the robot to a file: URDF, MJCF (.xml), SDFormat (.sdf) or mozzi's JSON, by the ending of its name."""
-    def with_payload(self, frame: str, inertia: ArrayLike) -> Model:
+    def with_payload(self, frame: str, inertia: ArrayLike, center_of_mass: ArrayLike | None = None) -> Model:
         """Return a copy with a payload fixed to a frame."""
     def with_frame(self, name: str, on: str, T: ArrayLike) -> Model:
         """Return a copy with an additional frame at a pose relative to an existing one."""

@@ -77,6 +77,12 @@ def external(wrench: Any) -> Any:
 from_external = external
 
 
+def _check(robot: Any, library: str) -> None:
+    if not isinstance(robot, Model):
+        expected = f"a mozzi.Model, and {library}'s model after it: {library}(robot, model)"
+        raise TypeError(f"robot is a {type(robot).__name__}, expected {expected}")
+
+
 def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
     """Make the conversions to and from Pinocchio.
 
@@ -94,6 +100,7 @@ def Pinocchio(robot: Model, model: Optional[Any] = None) -> _Pinocchio:
         `jacobian(J)` to Pinocchio; `from_configuration(q)`, `from_velocity(v)`, `from_acceleration(a)`,
         `from_force(tau)`, `from_mass_matrix(M)` back.
     """
+    _check(robot, "Pinocchio")
     if model is None:
         return _Pinocchio(robot, None)
     # the universe is number 0, then the free flyer of a floating base; mimics have no positions

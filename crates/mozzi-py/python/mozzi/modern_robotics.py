@@ -16,7 +16,10 @@ Differences for unusual input:
   given. Other matrices, or a last row other than 0, 0, 0, 1, are refused by logarithms, adjoints and robots.
 - A spatial inertia of an invalid form (not symmetric, or 𝒢 other than [[I, [mc]], [−[mc], m]]) is refused. Negative
   masses and moments are used as given, as in the package.
-- Lists longer than θ are truncated, as in the package; shorter ones are refused.
+- Exponentials refuse a matrix that is not [ω] or [V] within 10⁻³, such as a rotation; the package takes three or six of
+  its entries.
+- Lists longer than θ are truncated, as in the package; shorter ones are refused. ``IKinBody`` and ``IKinSpace`` require
+  a guess with one number for each screw.
 - A singular mass matrix raises ``numpy.linalg.LinAlgError``, also if rounding hides it from the package's inverse.
 - ``TransToRp`` and ``RotInv`` give views of new arrays, integers stay integers where the package keeps them.
 - ``IKinBody`` and ``IKinSpace`` take at most 20 steps of Newton's method from the guess, without limits, as in the
@@ -274,9 +277,11 @@ def JacobianSpace(Slist: Any, thetalist: Any) -> Any:
 _STEPS = 20
 
 
-def _solve(error: Any, jacobian: Any, thetalist0: Any, eomg: Any, ev: Any) -> Any:
+def _solve(error: Any, jacobian: Any, screws: Any, thetalist0: Any, eomg: Any, ev: Any) -> Any:
     """Newton's method: θ, and True if the remaining error (ω, v) has ‖ω‖ ≤ eomg and ‖v‖ ≤ ev."""
     theta = np.array(thetalist0)
+    if theta.shape != np.shape(screws)[1:]:
+        raise ValueError(f"thetalist0 has shape {theta.shape}, expected {np.shape(screws)[1:]}: a number for each screw")
     for step in range(_STEPS + 1):
         V = error(theta)
         if np.linalg.norm(V[:3]) <= eomg and np.linalg.norm(V[3:]) <= ev:
@@ -292,7 +297,7 @@ def IKinBody(Blist: Any, M: Any, T: Any, thetalist0: Any, eomg: Any, ev: Any) ->
     def error(theta: Any) -> Any:
         return se3ToVec(MatrixLog6(TransInv(FKinBody(M, Blist, theta)) @ T))
 
-    return _solve(error, lambda theta: JacobianBody(Blist, theta), thetalist0, eomg, ev)
+    return _solve(error, lambda theta: JacobianBody(Blist, theta), Blist, thetalist0, eomg, ev)
 
 
 def IKinSpace(Slist: Any, M: Any, T: Any, thetalist0: Any, eomg: Any, ev: Any) -> Any:
@@ -302,7 +307,7 @@ def IKinSpace(Slist: Any, M: Any, T: Any, thetalist0: Any, eomg: Any, ev: Any) -
         Tsb = FKinSpace(M, Slist, theta)
         return Adjoint(Tsb) @ se3ToVec(MatrixLog6(TransInv(Tsb) @ T))
 
-    return _solve(error, lambda theta: JacobianSpace(Slist, theta), thetalist0, eomg, ev)
+    return _solve(error, lambda theta: JacobianSpace(Slist, theta), Slist, thetalist0, eomg, ev)
 
 
 # Chapter 8: dynamics of open chains ----------------------------------------------------------------------------------

@@ -1,12 +1,11 @@
 //! Constraints: closing loops, assembly, rank, and constraint wrenches, at one state.
 
 use crate::array::list;
-use crate::failure::of_model;
+use crate::failure::{of_file, of_model};
 use crate::model::{PyModel, array};
 use crate::results::named;
 use mozzi::Wrench;
 use mozzi_urdf::constraints::{self, ConstraintsError};
-use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
@@ -34,11 +33,7 @@ impl PyModel {
 
 fn of_constraints(error: ConstraintsError) -> PyErr {
     match error {
-        ConstraintsError::File { path, source } if source.raw_os_error().is_some() => {
-            let words = source.to_string();
-            let words = words.split(" (os error").next().unwrap_or_default().to_string();
-            PyOSError::new_err((source.raw_os_error(), words, path.to_string_lossy().into_owned()))
-        }
+        ConstraintsError::File { path, source } if source.raw_os_error().is_some() => of_file(&path, &source),
         error => crate::describe::refused(error),
     }
 }

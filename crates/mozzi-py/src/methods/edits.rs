@@ -1,5 +1,6 @@
 //! Modified copies of a robot: with a payload, a frame, another gravity or base, locked joints, a part of it.
 
+use crate::arguments::Given;
 use crate::array::Numbers;
 use crate::describe::{pose, refused};
 use crate::failure::{LoadWarning, warn};
@@ -18,8 +19,10 @@ impl PyModel {
     /// frame : str
     ///     A link or frame.
     /// inertia : float, or array_like of shape (6, 6)
-    ///     Mass of a point at the frame's origin, kg, or spatial inertia in the frame: kg m², kg m, kg. One that no
-    ///     body has is used with a warning, as in a robot's file.
+    ///     Mass of a point, kg, or spatial inertia in the frame: kg m², kg m, kg. One that no body has is used with a
+    ///     warning, as in a robot's file.
+    /// center_of_mass : array_like, shape (3,), optional
+    ///     Position of the point mass in the frame, m. Default: the frame's origin.
     ///
     /// Returns
     /// -------
@@ -31,9 +34,24 @@ impl PyModel {
     /// >>> ur5 = mozzi.models.ur5()
     /// >>> round(ur5.with_payload("tool0", 2.0).mass - ur5.mass, 9)
     /// 2.0
-    fn with_payload(&self, py: Python<'_>, frame: &str, inertia: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (frame, inertia, center_of_mass=None))]
+    fn with_payload(
+        &self,
+        py: Python<'_>,
+        frame: &str,
+        inertia: &Bound<'_, PyAny>,
+        center_of_mass: Given<'_, '_>,
+    ) -> PyResult<Self> {
+        let center = |given| Numbers::fixed("center_of_mass", given, "(3,): m");
         let inertia = match inertia.extract::<f64>() {
-            Ok(mass) => SpatialInertia::point_mass(mass, mozzi::Vec3([0.0; 3])),
+            Ok(mass) => {
+                let center = center_of_mass.map_or(Ok([0.0; 3]), center)?;
+                SpatialInertia::point_mass(mass, mozzi::Vec3(center))
+            }
+            Err(_) if center_of_mass.is_some() => {
+                let why = "center_of_mass is given, expected None: a spatial inertia contains its centre of mass";
+                return Err(refused(why));
+            }
             Err(_) => {
                 let G = Numbers::matrix::<6, 6>("inertia", inertia, "(6, 6), or a mass in kg")?;
                 SpatialInertia::from_matrix(G).map_err(refused)?
@@ -85,14 +103,22 @@ impl PyModel {
     ///
     /// Parameters
     /// ----------
-    /// gravity : array_like, shape (3,)
-    ///     In the axes of {s}, m/s².
+    /// gravity : array_like, shape (3,), or float
+    ///     In the axes of {s}, m/s². One number points down: 9.81 is (0, 0, −9.81).
     ///
     /// Returns
     /// -------
     /// Model
     fn with_gravity(&self, gravity: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Self::built(self.robot().model.with_gravity(Numbers::fixed("gravity", gravity, "(3,): m/s²")?))
+        let gravity = match gravity.extract::<f64>() {
+            Ok(size) if size < 0.0 => {
+                let expected = format!("expected {}, which points down, or (0, 0, {size})", -size);
+                return Err(refused(format!("gravity is {size}, {expected}")));
+            }
+            Ok(size) => [0.0, 0.0, -size],
+            Err(_) => Numbers::fixed("gravity", gravity, "(3,), or a number: m/s²")?,
+        };
+        Self::built(self.robot().model.with_gravity(gravity))
     }
 
     /// Return a copy with a floating or a fixed base.

@@ -20,7 +20,8 @@ impl PyModel {
     /// meshes : {'visual', 'collision', 'none'}
     ///     Meshes of that file to embed in the page.
     /// mesh_root : path, optional
-    ///     A folder above meshes outside of the file's own folder and package; they are embedded as well.
+    ///     A folder above meshes outside of the file's own folder and package; they are embedded as well. Meshes that
+    ///     are not found elsewhere are searched there.
     ///
     /// Returns
     /// -------

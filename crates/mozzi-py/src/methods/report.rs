@@ -1,7 +1,7 @@
 //! HTML report of a robot and its motion.
 
 use crate::array::list;
-use crate::failure::{LoadWarning, of_loader, warn};
+use crate::failure::{LoadWarning, of_file, of_loader, warn};
 use crate::model::PyModel;
 use crate::results::named;
 use crate::simulate::contacts::Fixed;
@@ -10,7 +10,7 @@ use mozzi_report::{Drawing, Meshes, Motion, Touches};
 use mozzi_sim::Trajectory;
 use mozzi_sim::{ContactChange, ContactEvent, ContactForce, Energy, Sample};
 use mozzi_urdf::XacroArguments;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -142,7 +142,8 @@ impl PyModel {
     /// meshes : {'visual', 'collision', 'none'}
     ///     Meshes of that file to embed in the page.
     /// mesh_root : path, optional
-    ///     A folder above meshes outside of the file's own folder and package; they are embedded as well.
+    ///     A folder above meshes outside of the file's own folder and package; they are embedded as well. Meshes that
+    ///     are not found elsewhere are searched there.
     /// title : str
     ///     A short description of the motion.
     /// rows : int, optional
@@ -185,8 +186,7 @@ impl PyModel {
         let motion = motion.map(|motion| motion.thinned(rows.unwrap_or(usize::MAX)));
         let page = mozzi_report::html(model, &drawing, motion.as_ref());
         let page = page.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        mozzi_report::whole_file::save(&path, page.as_bytes())
-            .map_err(|error| PyOSError::new_err(format!("{}: {error}", path.display())))?;
+        mozzi_report::whole_file::save(&path, page.as_bytes()).map_err(|error| of_file(&path, &error))?;
         let rows = motion.map_or(0, |motion| motion.t.len());
         let numbers = [rows, all_rows, page.len()].map(|x| x.into_pyobject(py).map(Bound::into_any));
         named(py, "ReportSize", numbers.into_iter().collect::<Result<_, _>>()?)

@@ -1,7 +1,7 @@
 //! Writing a robot.
 
 use crate::describe::refused;
-use crate::failure::{LoadWarning, of_model, warn};
+use crate::failure::{LoadWarning, of_file, of_model, warn};
 use crate::model::PyModel;
 use mozzi_urdf::{Written, json, mjcf, sdf};
 use pyo3::prelude::*;
@@ -17,7 +17,10 @@ fn written(ending: &str, model: &mozzi::Model) -> PyResult<Written> {
         "sdf" => sdf::write(robot).map_err(|why| not_written(&why)),
         "xml" => mjcf::write(robot).map_err(|why| not_written(&why)),
         "urdf" => {
-            let mut found = lossless(mozzi_urdf::write(robot).map_err(|why| not_written(&why))?);
+            let mut expressible = mozzi_urdf::expressible(robot);
+            let end_effector = expressible.end_effector.take();
+            let mut found = lossless(mozzi_urdf::write(&expressible).map_err(|why| not_written(&why))?);
+            found.losses.extend(end_effector.map(|name| format!("the choice of the end effector, `{name}`")));
             let names: Vec<&str> = robot.states.iter().map(|state| state.name.as_str()).collect();
             found.losses.extend((!names.is_empty()).then(|| format!("the named states {}", names.join(", "))));
             Ok(found)
@@ -30,8 +33,9 @@ fn written(ending: &str, model: &mozzi::Model) -> PyResult<Written> {
 impl PyModel {
     /// Write the robot to a file: URDF, MJCF (.xml), SDFormat (.sdf) or mozzi's JSON, by the ending of its name.
     ///
-    /// JSON holds all of the robot's numbers. Shapes are in none; `mozzi convert` and `mozzi.Identification.write` keep
-    /// the text of a URDF.
+    /// JSON holds all of the robot's numbers. URDF gets a link on each axis that misses its link's frame, and a link
+    /// for each further frame. Shapes are in none; `mozzi convert` and `mozzi.Identification.write` keep the text of a
+    /// URDF.
     ///
     /// Parameters
     /// ----------
@@ -60,7 +64,7 @@ impl PyModel {
         let model = model.described().and_then(|robot| robot.build()).map_err(of_model)?;
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let Written { text, losses, remarks } = written(ending, &model)?;
-        std::fs::write(&path, text)?;
+        std::fs::write(&path, text).map_err(|error| of_file(&path, &error))?;
         let losses = losses.into_iter().map(|loss| format!("{} cannot express {loss}", path.display()));
         for text in losses.chain(remarks.into_iter().map(|remark| format!("{}: {remark}", path.display()))) {
             warn::<LoadWarning>(py, &text, 1)?;

@@ -73,7 +73,10 @@ impl<'py> Goals<'py> {
             let row3 = |k: usize| std::array::from_fn(|column| x[3 * k + column]);
             let row4 = |k: usize| std::array::from_fn(|column| x[4 * k + column]);
             match self.kind {
-                Kind::Position => Ok(Goal::Position(Vec3(row3(0)))),
+                Kind::Position => match row3(0) {
+                    p if p.iter().all(|x: &f64| x.is_finite()) => Ok(Goal::Position(Vec3(p))),
+                    [x, y, z] => Err(refused(index, format!("({x}, {y}, {z}), expected finite numbers, m"))),
+                },
                 Kind::Pose => pose(std::array::from_fn(row4))
                     .map(Goal::Pose)
                     .map_err(|error| refused(index, Python::attach(|py| error.value(py).to_string()))),

@@ -4,6 +4,7 @@ use super::goals::Goals;
 use super::solutions::{Found, solution};
 use crate::arguments::Given;
 use crate::array::{Numbers, common_leading};
+use crate::counts::count;
 use crate::describe::refused;
 use crate::failure::{of_motion, of_one_motion};
 use crate::interrupt::Interrupt;
@@ -163,8 +164,8 @@ impl PyInverseKinematics {
         method: &str,
         angle_tolerance: f64,
         distance_tolerance: f64,
-        iterations: usize,
-        starts: usize,
+        iterations: i64,
+        starts: i64,
         seed: u64,
         length: f64,
         limits: bool,
@@ -175,6 +176,7 @@ impl PyInverseKinematics {
             other => return Err(refused(format!("method is '{other}', expected 'levenberg-marquardt' or 'newton'"))),
         };
         let (angle, distance) = (angle_tolerance, distance_tolerance);
+        let (iterations, starts) = (count("iterations", iterations)?, count("starts", starts)?);
         let options = Options { method, angle, distance, iterations, starts, seed, length, limits };
         let frame = model.get().frame(frame)?;
         let solver = PyInverseKinematics { model, frame, options };

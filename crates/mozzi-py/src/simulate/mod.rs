@@ -9,6 +9,7 @@ mod watched;
 
 use crate::arguments::Given;
 use crate::array::{Numbers, common_leading, shown};
+use crate::counts;
 use crate::model::PyModel;
 use crate::threads::Threads;
 use mozzi::Vec3;
@@ -183,11 +184,11 @@ impl PyModel {
         theta: &Bound<'py, PyAny>,
         dtheta: Given<'_, 'py>,
         duration: f64,
-        steps: Option<usize>,
+        steps: Given<'_, 'py>,
         torque: Given<'_, 'py>,
         method: &str,
         tolerance: Option<f64>,
-        record_every: usize,
+        record_every: i64,
         until: Given<'_, 'py>,
         events: Given<'_, 'py>,
         joint_limits: &str,
@@ -206,8 +207,7 @@ impl PyModel {
         };
         let at_rest = vec![0.0; this.robot().model.n()].into_pyobject(slf.py())?;
         let (mut theta, mut dtheta) = (numbers("theta", theta)?, numbers("dtheta", dtheta.unwrap_or(&at_rest))?);
-        // the default step is a millisecond, as in `mozzi simulate`; a wrong duration is refused below
-        let steps = steps.unwrap_or_else(|| (1e3 * duration).ceil().max(1.0) as usize);
+        let (steps, record_every) = (counts::steps(steps, duration)?, counts::count("record_every", record_every)?);
         let (method, joint_limits) = (simulation_method(method, tolerance)?, policy(joint_limits)?);
         let mut options = Options { method, record_every, joint_limits, ..Options::new(duration, steps) };
         let watched = Watched { until, events };
@@ -230,6 +230,9 @@ impl PyModel {
             return Err(PyValueError::new_err(format!("torque has shape {found}, expected {expected}")));
         }
         let leading = common_leading(tables.iter().map(|table| (table.name, table.leading(1))))?;
+        if duration.is_finite() && until.is_none() {
+            counts::check_size(&this.robot().model, leading.iter().product(), steps, record_every)?;
+        }
         tables.into_iter().try_for_each(|table| table.spread::<f64>(&leading, 1))?;
         let start = [theta.slice()?, dtheta.slice()?];
         let model = &this.robot().model;

@@ -36,7 +36,7 @@ impl Source {
         let bytes = std::fs::read(path).map_err(|error| Error::Read { file: name_or_path.to_string(), error })?;
         let text = String::from_utf8_lossy(&bytes);
         if mozzi_urdf::sdf::is_sdf(&text) {
-            return Self::written(name_or_path, &mozzi_urdf::expressible(robot)); // they do not read it
+            return Self::written(name_or_path, robot); // they do not read it
         }
         Ok(source(language(&text), Some(name_or_path.to_string()), None))
     }
@@ -46,12 +46,15 @@ impl Source {
         Source { name: name.to_string(), language: language(text), path: None, text: Some(text.to_string()) }
     }
 
-    /// The robot, written as URDF.
+    /// The robot, written as URDF. Axes that miss their frames get links, further frames become links; the end effector
+    /// has no effect, and gravity, which URDF lacks, is a difference that the comparison explains.
     ///
     /// # Errors
     /// [`Error::Write`].
     pub fn written(name: &str, robot: &Description) -> Result<Self> {
-        let text = mozzi_urdf::write(robot).map_err(|error| Error::Write { robot: name.to_string(), error })?;
+        let gravity = Description::new("").gravity;
+        let robot = Description { end_effector: None, gravity, ..mozzi_urdf::expressible(robot) };
+        let text = mozzi_urdf::write(&robot).map_err(|error| Error::Write { robot: name.to_string(), error })?;
         Ok(Source { name: name.to_string(), language: "urdf", path: None, text: Some(text) })
     }
 }

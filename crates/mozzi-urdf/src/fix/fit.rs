@@ -3,7 +3,7 @@
 use crate::XacroArguments;
 use crate::geometry::hull::convex_hull;
 use crate::geometry::moments::{Filling, Moments, moments};
-use crate::geometry::{Form, Purpose, Shape, scaled_surface};
+use crate::geometry::{Form, MeshFolders, Purpose, Shape, scaled_surface};
 use mozzi::spatial::Rounded;
 use mozzi::{SE3, SO3, SpatialInertia, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -128,8 +128,8 @@ pub(super) struct Solids {
 }
 
 /// The solids of all links whose shapes can be read: the collision shapes, or else the visual ones. Meshes are located
-/// as those of pages are; they may also be below `mesh_root`.
-pub(super) fn solids(file: &Path, text: &str, detail: Detail, mesh_root: Option<&Path>) -> Solids {
+/// as those of pages are; in `folders`, too.
+pub(super) fn solids(file: &Path, text: &str, detail: Detail, folders: MeshFolders<'_>) -> Solids {
     let shapes = crate::geometry::parse_with(&file.to_string_lossy(), text, &XacroArguments::default()).shapes;
     let mut links: BTreeMap<&str, Vec<&Shape>> = BTreeMap::new();
     for shape in &shapes {
@@ -142,7 +142,7 @@ pub(super) fn solids(file: &Path, text: &str, detail: Detail, mesh_root: Option<
             let mut points = Vec::new();
             let own: Vec<&&Shape> = shapes.iter().filter(|shape| shape.purpose == purpose).collect();
             for shape in &own {
-                let read = points_of(shape, file, mesh_root);
+                let read = points_of(shape, file, folders);
                 let mut own = read.map_err(|error| why.get_or_insert(error).clone()).ok()?;
                 if detail == Detail::Rough {
                     own = farthest(own);
@@ -187,7 +187,7 @@ fn farthest(points: Vec<Vec3>) -> Vec<Vec3> {
 }
 
 /// Points whose hull is about the shape's, or why its mesh cannot be read.
-fn points_of(shape: &Shape, robot: &Path, mesh_root: Option<&Path>) -> Result<Vec<Vec3>, String> {
+fn points_of(shape: &Shape, robot: &Path, folders: MeshFolders<'_>) -> Result<Vec<Vec3>, String> {
     let ring = |radius: f64, z: f64| {
         (0..AROUND).map(move |k| {
             let (sin, cos) = (f64::from(k) / f64::from(AROUND) * std::f64::consts::TAU).sin_cos();
@@ -215,6 +215,6 @@ fn points_of(shape: &Shape, robot: &Path, mesh_root: Option<&Path>) -> Result<Ve
             let ball = dome(1.0, 0.0, 1.0).chain(dome(1.0, 0.0, -1.0));
             ball.map(|p| Vec3([0, 1, 2].map(|k| p.0[k] * radii[k]))).collect()
         }
-        Form::Mesh { file, scale } => scaled_surface(robot, file, *scale, mesh_root)?.vertices,
+        Form::Mesh { file, scale } => scaled_surface(robot, file, *scale, folders)?.vertices,
     })
 }

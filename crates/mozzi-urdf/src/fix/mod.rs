@@ -18,6 +18,7 @@ pub use estimate::estimates;
 pub use repairs::Repairs;
 
 use crate::edit::element::{Editor, Replacement, Tag, replaced};
+use crate::geometry::MeshFolders;
 use crate::text::expansion;
 use crate::urdf::write::NotUrdf;
 use crate::{EditError, Policy, Settings, parse_with};
@@ -126,7 +127,7 @@ pub fn misfits(file_name: &str, text: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let Ok(document) = Document::parse(body) else { return found };
-    let solids = fit::solids(Path::new(file_name), text, Detail::Rough, None).all;
+    let solids = fit::solids(Path::new(file_name), text, Detail::Rough, MeshFolders::default()).all;
     for link in Tag::new(document.root_element(), body).children().filter(|tag| tag.name() == "link") {
         let (Some(name), Some(inertial)) = (link.attribute("name"), Inertial::read(link)) else { continue };
         if let Some(solid) =
@@ -156,11 +157,11 @@ fn with_robot(
 ) -> Result<Repairs, EditError> {
     let unsupported = |why: &str| EditError::Unsupported(NotUrdf { reasons: vec![why.to_string()] });
     if expansion::of(file_name, text, settings).map_err(EditError::Load)?.is_some() {
-        return Err(unsupported("repairs are of URDF: expand it first, by `mozzi xacro`"));
+        return Err(unsupported("only URDF is repaired: expand it first, by `mozzi xacro`"));
     }
     for (format, is_other) in [("MJCF", crate::mjcf::is_mjcf(text)), ("SDFormat", crate::sdf::is_sdf(text))] {
         if is_other {
-            let why = format!("repairs are of URDF; for {format} write the repaired numbers yourself");
+            let why = format!("only URDF is repaired, and this is {format}");
             return Err(unsupported(&why));
         }
     }
@@ -180,7 +181,8 @@ fn with_robot(
             inertials.insert(name.to_string(), inertial);
         }
     }
-    let solids = fit::solids(Path::new(file_name), text, detail, mesh_root);
+    let folders = MeshFolders { root: mesh_root, packages: &settings.xacro.packages };
+    let solids = fit::solids(Path::new(file_name), text, detail, folders);
     let robot = Robot { root, document: &document, description, solids, inertials };
     let mut all = make(&robot);
     all.sort_by_key(|proposal| proposal.line);

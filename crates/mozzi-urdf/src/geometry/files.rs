@@ -1,7 +1,7 @@
 //! Locates the meshes that a robot's file names.
 
 use crate::report::visible::visible;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
 
@@ -36,28 +36,51 @@ impl fmt::Display for NotLocated {
             0 => write!(f, "mesh {name} was not found: there is no file {first}"),
             1 => write!(f, "mesh {name} was not found: neither {first} nor at 1 other place"),
             more => write!(f, "mesh {name} was not found: neither {first} nor at {more} other places"),
+        }?;
+        match package_path(&self.file).as_deref().and_then(package_name) {
+            Some(package) => {
+                let package = visible(&package.to_string_lossy());
+                write!(f, "; ROS_PACKAGE_PATH, or --package {package}=DIR in the command line, names its folder")
+            }
+            None => Ok(()),
         }
     }
 }
 
 impl std::error::Error for NotLocated {}
 
+/// Folders chosen by the reader of a robot, in which meshes are searched and may lie.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MeshFolders<'f> {
+    /// A folder of meshes, or of packages.
+    pub root: Option<&'f Path>,
+    /// Packages by name, with their folders.
+    pub packages: &'f [(String, PathBuf)],
+}
+
+impl<'f> From<Option<&'f Path>> for MeshFolders<'f> {
+    fn from(root: Option<&'f Path>) -> Self {
+        MeshFolders { root, packages: &[] }
+    }
+}
+
 /// The file of a mesh that the robot in `robot_file` names. A path is relative to the robot's file; `file://` is
-/// absolute; `package://NAME/PATH` (two slashes or three) is searched as `NAME/PATH` in every folder above the robot's
-/// file, then in those of `ROS_PACKAGE_PATH`, and as `share/NAME/PATH` in those of `AMENT_PREFIX_PATH`. Nothing is
-/// fetched.
+/// absolute; `package://NAME/PATH` (two slashes or three) is searched in the given packages, as `NAME/PATH` in every
+/// folder above the robot's file, then in those of `ROS_PACKAGE_PATH`, and as `share/NAME/PATH` in those of
+/// `AMENT_PREFIX_PATH`. A path or package that is not there is searched in the given root. Nothing is fetched.
 ///
 /// A robot's file must not give access to other files of its reader: with symbolic links followed, the mesh must lie in
 /// the folder of the robot's file, in the package around it (the nearest folder above that has a `package.xml`), or in
-/// the package of its address. Such a package has a `package.xml`, contains the robot's file, or is one of ROS. `root`
-/// is one more folder in which meshes may lie, chosen by the reader.
+/// the package of its address. Such a package has a `package.xml`, contains the robot's file, or is one of ROS. Meshes
+/// may also lie in the folders chosen by the reader.
 ///
 /// # Errors
 /// [`NotLocated`] with the places searched, or with the file that is outside of these folders.
-pub fn locate(robot_file: &Path, mesh: &str, root: Option<&Path>) -> Result<PathBuf, NotLocated> {
-    let candidates = candidates(robot_file, mesh, &|name| std::env::var_os(name));
+pub fn locate<'f>(robot_file: &Path, mesh: &str, folders: impl Into<MeshFolders<'f>>) -> Result<PathBuf, NotLocated> {
+    let folders = folders.into();
+    let candidates = candidates(robot_file, mesh, &folders, &|name| std::env::var_os(name));
     let mut own = own_folders(robot_file);
-    own.extend(root.and_then(|root| root.canonicalize().ok()));
+    own.extend(folders.root.and_then(|root| root.canonicalize().ok()));
     let mut outside = None;
     for candidate in candidates.iter().filter(|candidate| candidate.path.is_file()) {
         match candidate.is_allowed(&own) {
@@ -121,17 +144,43 @@ impl Candidate {
     }
 }
 
-fn candidates(robot_file: &Path, mesh: &str, variable: &dyn Fn(&str) -> Option<OsString>) -> Vec<Candidate> {
-    let folder = robot_file.parent().unwrap_or(Path::new(""));
-    let plain = |path: &str| vec![Candidate { path: folder.join(path), package: None }];
-    if let Some(path) = mesh.strip_prefix("file://") {
-        return plain(path);
+/// The path of a `package://` address, which begins with the package's name.
+fn package_path(mesh: &str) -> Option<PathBuf> {
+    mesh.strip_prefix("package://").map(|path| PathBuf::from(path.trim_start_matches('/')))
+}
+
+fn package_name(path: &Path) -> Option<&OsStr> {
+    match path.components().next() {
+        Some(Component::Normal(name)) => Some(name),
+        _ => None,
     }
-    let Some(path) = mesh.strip_prefix("package://") else {
-        return if mesh.contains("://") { Vec::new() } else { plain(mesh) };
+}
+
+fn candidates(
+    robot_file: &Path,
+    mesh: &str,
+    given: &MeshFolders<'_>,
+    variable: &dyn Fn(&str) -> Option<OsString>,
+) -> Vec<Candidate> {
+    let folder = robot_file.parent().unwrap_or(Path::new(""));
+    let plain = |path: PathBuf| Candidate { path, package: None };
+    if let Some(path) = mesh.strip_prefix("file://") {
+        return vec![plain(folder.join(path))];
+    }
+    let in_root = |path: &Path| given.root.map(|root| plain(root.join(path)));
+    let Some(path) = package_path(mesh) else {
+        let relative = || std::iter::once(plain(folder.join(mesh))).chain(in_root(Path::new(mesh))).collect();
+        return if mesh.contains("://") { Vec::new() } else { relative() };
     };
-    let path = Path::new(path.trim_start_matches('/'));
-    let Some(Component::Normal(name)) = path.components().next() else { return Vec::new() };
+    let path = path.as_path();
+    let Some(name) = package_name(path) else { return Vec::new() };
+    let inside = path.strip_prefix(name).unwrap_or(path);
+    let named = given.packages.iter().filter(|(known, _)| **known == *name);
+    let named =
+        named.map(|(_, package)| Candidate { path: package.join(inside), package: Some((package.clone(), true)) });
+    // the root may be a folder of packages, or the package itself
+    let of_root =
+        in_root(path).into_iter().chain(in_root(inside).filter(|_| given.root.and_then(Path::file_name) == Some(name)));
     let of = |folder: PathBuf, is_of_ros| Candidate {
         path: folder.join(path),
         package: Some((folder.join(name), is_of_ros)),
@@ -145,7 +194,8 @@ fn candidates(robot_file: &Path, mesh: &str, variable: &dyn Fn(&str) -> Option<O
     });
     let ament = listed("AMENT_PREFIX_PATH").unwrap_or_default().into_iter().map(|folder| folder.join("share"));
     let of_ros = ros.chain(ament).map(|folder| of(folder, true));
-    whole.ancestors().map(|above| of(above.to_path_buf(), false)).chain(of_ros).collect()
+    let above = whole.ancestors().map(|above| of(above.to_path_buf(), false));
+    named.chain(above).chain(of_ros).chain(of_root).collect()
 }
 
 #[cfg(test)]
@@ -156,7 +206,9 @@ mod tests {
     fn addresses_lead_to_places() {
         let none = |_: &str| None;
         let paths = |found: Vec<Candidate>| found.into_iter().map(|found| found.path).collect::<Vec<_>>();
-        let of = |mesh: &str| paths(candidates(Path::new("/robots/arm/urdf/arm.urdf"), mesh, &none));
+        let of = |mesh: &str| {
+            paths(candidates(Path::new("/robots/arm/urdf/arm.urdf"), mesh, &MeshFolders::default(), &none))
+        };
         assert_eq!(of("meshes/a.stl"), [Path::new("/robots/arm/urdf/meshes/a.stl")]);
         assert_eq!(of("file:///x/a.stl"), [Path::new("/x/a.stl")]);
         assert!(of("https://a.b/c.stl").is_empty());
@@ -168,10 +220,18 @@ mod tests {
             "ROS_PACKAGE_PATH" => Some(OsString::from("/ws/src/arm")),
             _ => Some(OsString::from("/opt/ros")),
         };
-        let found = paths(candidates(Path::new("arm.urdf"), "package://arm/a.stl", &variables));
+        let found =
+            paths(candidates(Path::new("arm.urdf"), "package://arm/a.stl", &MeshFolders::default(), &variables));
         for place in ["/ws/src/arm/a.stl", "/opt/ros/share/arm/a.stl"] {
             assert!(found.contains(&PathBuf::from(place)), "{place} in {found:?}");
         }
+        let packages = [("arm".to_string(), PathBuf::from("/x/arm_description"))];
+        let given = MeshFolders { root: Some(Path::new("/y/arm")), packages: &packages };
+        let found = paths(candidates(Path::new("arm.urdf"), "package://arm/m/a.stl", &given, &none));
+        assert_eq!(found[0], Path::new("/x/arm_description/m/a.stl"));
+        assert_eq!(found[found.len() - 2..], ["/y/arm/arm/m/a.stl", "/y/arm/m/a.stl"].map(PathBuf::from));
+        let found = paths(candidates(Path::new("/r/arm.urdf"), "m/a.stl", &given, &none));
+        assert_eq!(found, ["/r/m/a.stl", "/y/arm/m/a.stl"].map(PathBuf::from));
     }
 
     #[test]
@@ -179,6 +239,7 @@ mod tests {
         let error =
             locate(Path::new("/robots/arm.urdf"), "package://arm/a.stl", None).expect_err("nothing there").to_string();
         assert!(error.starts_with("mesh package://arm/a.stl was not found: neither /"), "{error}");
+        assert!(error.ends_with("; ROS_PACKAGE_PATH, or --package arm=DIR in the command line, names its folder"));
         let error = locate(Path::new("a.urdf"), "http://a/b.stl", None).expect_err("no network").to_string();
         assert_eq!(error, "mesh http://a/b.stl: expected package://, file://, or a path");
     }

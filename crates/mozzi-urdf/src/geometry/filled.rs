@@ -1,8 +1,8 @@
 //! The inertia of the solid that a mesh bounds.
 
-use super::locate;
 use super::moments::{Filling, moments};
 use super::surface::Surface;
+use super::{MeshFolders, locate};
 use crate::files;
 use crate::report::visible::visible;
 use mozzi::{SpatialInertia, Vec3};
@@ -19,7 +19,7 @@ const MOST_BYTES: u64 = 64 << 20;
 /// # Errors
 /// The reason why the mesh is not found, not read or no closed surface.
 pub fn filled_mesh(robot_file: &Path, mesh: &str, scale: [f64; 3]) -> Result<SpatialInertia, String> {
-    let mut surface = scaled_surface(robot_file, mesh, scale, None)?;
+    let mut surface = scaled_surface(robot_file, mesh, scale, MeshFolders::default())?;
     if scale.iter().product::<f64>() < 0.0 {
         surface.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2)); // a mirrored surface is turned outwards
     }
@@ -32,9 +32,9 @@ pub(crate) fn scaled_surface(
     robot_file: &Path,
     mesh: &str,
     scale: [f64; 3],
-    mesh_root: Option<&Path>,
+    folders: MeshFolders<'_>,
 ) -> Result<Surface, String> {
-    let path = locate(robot_file, mesh, mesh_root).map_err(|why| why.to_string())?;
+    let path = locate(robot_file, mesh, folders).map_err(|why| why.to_string())?;
     let wrong = |why: &dyn Display| format!("mesh {}: {why}", visible(mesh));
     let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
     let bytes = files::read(&path, MOST_BYTES).map_err(|why| wrong(&why))?;

@@ -15,7 +15,7 @@ mod vertices;
 
 pub use contact::{FRICTION, ShapeContacts, contact_points, end_points};
 pub(crate) use files::Own;
-pub use files::{NotLocated, locate};
+pub use files::{MeshFolders, NotLocated, locate};
 pub use filled::filled_mesh;
 pub(crate) use filled::scaled_surface;
 pub use mesh::check_mesh;

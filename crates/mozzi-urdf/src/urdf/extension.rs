@@ -48,7 +48,7 @@ pub(crate) fn element(child: &Element, parent: &Element, cx: &mut Context) {
         let (parent, written) = (&parent.subject, shown(written));
         let message =
             format!("{parent}: has an element <{written}>, which mozzi does not read; it may change the motion");
-        let help = "it is ignored here and elsewhere; remove it, or compute its effect separately";
+        let help = "this and all others like it are ignored; remove them, or compute their effect separately";
         cx.findings.add(Finding::warning("unknown_element", child.span(), message).help(help));
     }
 }
@@ -62,7 +62,7 @@ pub(crate) fn attribute(on: &Element, written: &str, span: std::ops::Range<usize
         let (subject, written) = (&on.subject, shown(written));
         let message =
             format!("{subject}: has an attribute `{written}`, which mozzi does not read; it may change the motion");
-        let help = "it is ignored here and elsewhere; remove it, or compute its effect separately";
+        let help = "this and all others like it are ignored; remove them, or compute their effect separately";
         cx.findings.add(Finding::warning("unknown_attribute", span, message).help(help));
     }
 }

@@ -142,7 +142,7 @@ fn a_link_in_g_and_mm_is_told_by_the_check() {
 fn sdformat_is_not_repaired() {
     let text = "<sdf version='1.9'><model name='m'><link name='a'/></model></sdf>";
     let why = proposals("m.sdf", text, None, &Settings::default()).unwrap_err().to_string();
-    assert!(why.contains("for SDFormat write the repaired numbers yourself"), "{why}");
+    assert!(why.contains("only URDF is repaired, and this is SDFormat"), "{why}");
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn a_density_gives_inertias() {
 #[test]
 fn other_languages_are_refused_by_name() {
     let why = |text: &str| proposals("a.xml", text, None, &Settings::default()).unwrap_err().to_string();
-    assert!(why("<mujoco><worldbody/></mujoco>").contains("repairs are of URDF"));
+    assert!(why("<mujoco><worldbody/></mujoco>").contains("only URDF is repaired"));
     let xacro = "<robot name='a' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:property name='x' value='1'/><link name='b'/></robot>";
     assert!(why(xacro).contains("mozzi xacro"), "{}", why(xacro));
     assert!(why("<robot").contains("refused"), "{}", why("<robot"));

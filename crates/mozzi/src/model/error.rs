@@ -133,13 +133,13 @@ impl fmt::Display for Error {
                 write!(f, "{what} has {found} entries, expected {expected}")
             }
             Error::NoSuchFrame { name, known } => {
-                write!(f, "there is no frame `{name}`; this robot has {}", near(name, known))
+                write!(f, "there is no frame `{name}`{}; this robot has {}", meant(name, known), near(name, known))
             }
             Error::NoSuchJoint { name, known } => {
-                write!(f, "there is no joint `{name}`; this robot has {}", near(name, known))
+                write!(f, "there is no joint `{name}`{}; this robot has {}", meant(name, known), near(name, known))
             }
             Error::NoSuchState { name, known } => {
-                write!(f, "there is no state `{name}`; this robot has {}", near(name, known))
+                write!(f, "there is no state `{name}`{}; this robot has {}", meant(name, known), near(name, known))
             }
             Error::NoSuchQuantity { name, known } => {
                 let near = nearest(name, known, 3);
@@ -202,6 +202,19 @@ pub(crate) fn names<T: AsRef<str>>(names: &[T]) -> String {
 
 /// Names listed in a message.
 const MOST_NAMES: usize = 20;
+
+/// The only name that differs by its case alone, else the only one that contains the given name.
+fn meant(name: &str, known: &[String]) -> String {
+    let one = |is_near: &dyn Fn(&str) -> bool| {
+        let mut near = known.iter().filter(|known| is_near(known));
+        near.next().filter(|_| near.next().is_none())
+    };
+    let lower = name.to_lowercase();
+    let found = one(&|known| known.to_lowercase() == lower)
+        .or_else(|| one(&|known| lower.len() > 2 && known.to_lowercase().contains(&lower)));
+    let found = found.filter(|_| known.len() > 1);
+    found.map_or_else(String::new, |found| format!(" (did you mean `{found}`?)"))
+}
 
 /// All names, or of many the three nearest.
 fn near(name: &str, known: &[String]) -> String {

@@ -122,6 +122,9 @@ pub struct NotASpatialInertia {
 impl core::fmt::Display for NotASpatialInertia {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let NotASpatialInertia { row, column, found, expected } = self;
+        if !found.is_finite() {
+            return write!(f, "not a spatial inertia: entry ({row}, {column}) is {found}, expected a finite number");
+        }
         write!(
             f,
             "not a spatial inertia: entry ({row}, {column}) is {found}, expected {expected} (the form is [[I, [mc]], [−[mc], m]])"
@@ -145,6 +148,9 @@ impl SpatialInertia<f64> {
         for (row, (found, expected)) in G.iter().zip(this.to_matrix()).enumerate() {
             for column in 0..6 {
                 let (found, expected) = (found[column], expected[column]);
+                if !largest.is_finite() && found.is_finite() {
+                    continue; // the entry that is not finite is named
+                }
                 if !((found - expected).abs() <= 1e-12 * largest) {
                     return Err(NotASpatialInertia { row, column, found, expected });
                 }

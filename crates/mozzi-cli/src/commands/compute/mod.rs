@@ -23,6 +23,7 @@ use crate::workload;
 use clap::{Arg, Args};
 use mozzi::quantities::{Dim, INPUTS, LIST, Of, Query};
 use mozzi::{Environment, Model, Task, Vec3};
+use mozzi_urdf::counted;
 use one_state::OneState;
 use serde_json::{Value, json};
 use table::{Job, TableArguments};
@@ -112,11 +113,12 @@ pub fn run(arguments: &ComputeArguments) -> Result<String> {
             failure::note(&format!("{}: {why}", hyphenated(query.name())));
         } else if query.name().starts_with("constrained_forward_dynamics") {
             let redundant = model.constraint_rank(slices[0])?.redundant;
-            if let [one, ..] = &redundant[..] {
-                failure::note(&format!(
-                    "λ is not unique: `{one}` and {} other rows depend on the rest, along which it may be rounding",
-                    redundant.len() - 1
-                ));
+            if let [one, others @ ..] = &redundant[..] {
+                let rows = match others.len() {
+                    0 => format!("`{one}` depends"),
+                    more => format!("`{one}` and {} depend", counted(more, "other row")),
+                };
+                failure::note(&format!("λ is not unique: {rows} on the rest, along which it may be rounding"));
             }
         }
         found.push(OneState { query, model: &model, inputs, environment, outputs });

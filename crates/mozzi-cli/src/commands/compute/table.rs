@@ -15,6 +15,7 @@ use clap::Args;
 use mozzi::quantities::Query;
 use mozzi::{Environment, FrameId, Model};
 use mozzi_engine::{Batch, BatchEnvironment, Error};
+use mozzi_urdf::counted;
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};
 
@@ -146,7 +147,8 @@ impl Job<'_> {
                 };
                 let place = output.filter(|file| *file != "-").unwrap_or("standard output");
                 failure::write(&format!(
-                    "{count} states in {seconds:.3} s, {rate:.3e} states/s ({}, {engine}, {of_threads}): {} in {place}\n",
+                    "{} in {seconds:.3} s, {rate:.3e} states/s ({}, {engine}, {of_threads}): {} in {place}\n",
+                    counted(count, "state"),
                     T::NAME,
                     arrays.join(", "),
                 ));

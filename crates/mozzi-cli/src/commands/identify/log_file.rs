@@ -31,7 +31,7 @@ pub fn read_table(file: &str, model: &Model, given: &Given) -> Result<Samples> {
 /// Reads a log, and the meaning of its columns.
 pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Row>)> {
     let mut samples = read_table(file, model, given)?;
-    join(&mut samples, model)?;
+    join(&mut samples, model, "; --columns shows how each is read")?;
     check_locked(&samples)?;
     let Samples { file: name, columns, is_time_certain, .. } = &samples;
     let (name, columns, is_time_certain) = (name.clone(), columns.clone(), *is_time_certain);

@@ -28,9 +28,9 @@ impl Header {
     pub fn read(from: &mut dyn Read) -> Result<Self, String> {
         let cut = |_| "it ends inside its header".to_string();
         let mut start = [0; 8];
-        from.read_exact(&mut start[..6]).map_err(|_| no_magic())?;
+        from.read_exact(&mut start[..6]).map_err(|_| NO_MAGIC)?;
         if start[..6] != *MAGIC {
-            return Err(no_magic());
+            return Err(NO_MAGIC.to_string());
         }
         from.read_exact(&mut start[6..]).map_err(cut)?;
         let mut length = [0; 4];
@@ -53,9 +53,8 @@ impl Header {
     }
 }
 
-fn no_magic() -> String {
-    "it does not begin with \\x93NUMPY".to_string()
-}
+/// The error for a file of another format.
+pub const NO_MAGIC: &str = "it does not begin with \\x93NUMPY";
 
 /// The rest of the text.
 struct Scanner<'h>(&'h str);

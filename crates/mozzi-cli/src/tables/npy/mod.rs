@@ -5,6 +5,8 @@ mod kind;
 
 pub use header::Header;
 
+use header::NO_MAGIC;
+
 use super::array::{Array, tuple};
 use super::precision::Precision;
 use crate::failure::{Failure, Result};
@@ -16,12 +18,20 @@ const CHUNK: usize = 1 << 16;
 
 /// The header of a file, or of an archive's array; `place` is its name in messages.
 pub fn header(place: &dyn Display, from: &mut dyn Read) -> Result<Header> {
-    Header::read(from).map_err(|what| Failure::wrong(format!("{place} is not a .npy file: {what}")))
+    Header::read(from).map_err(|what| match what.as_str() {
+        NO_MAGIC => Failure::wrong(format!("{place} is not a .npy file: {what}")),
+        _ => unreadable(place, &what),
+    })
+}
+
+/// A .npy file that is cut off, or of another kind than those that are read.
+fn unreadable(place: &dyn Display, what: &str) -> Failure {
+    Failure::wrong(format!("the .npy file {place} cannot be read: {what}"))
 }
 
 /// The numbers after a header, by rows; nothing may follow them. `length` is the number of bytes there, if known.
 pub fn numbers(place: &dyn Display, header: &Header, length: Option<u64>, from: &mut dyn Read) -> Result<Vec<f64>> {
-    let wrong = |what: &str| Failure::wrong(format!("{place} is not a .npy file: {what}"));
+    let wrong = |what: &str| unreadable(place, what);
     let other = |found: &dyn Display| {
         let shape = tuple(&header.shape);
         wrong(&format!("there are {found} bytes of numbers, expected those of shape {shape}"))
