@@ -233,7 +233,7 @@ impl Parameters {
             for (k, x) in offsets.center(link).0.into_iter().enumerate() {
                 center.0[k] = number(name, Part::Center(k), x)?;
             }
-            center = center - offset(name);
+            center -= offset(name);
             let size = [G.I.xx, G.I.yy, G.I.zz].into_iter().fold(0.0, f64::max);
             let I = at_c.I;
             let mut entry =

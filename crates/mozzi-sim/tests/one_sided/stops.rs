@@ -96,7 +96,7 @@ fn a_start_beyond_a_limit_is_reported_at_once() {
 #[test]
 fn a_gimbal_stays_within_its_stops() {
     let body = SpatialInertia::new(4.0, Vec3([0.0, 0.1, 0.02]), Sym3::diagonal(0.02, 0.01, 0.02));
-    let limit = 1.5708;
+    let limit = std::f64::consts::FRAC_PI_2 + 4e-6; // as files round it
     let turn = |name: &str, parent: &str, child: &str, axis: [f64; 3]| {
         let axis = JointKind::Screw(ScrewAxis::new(axis, [0.0; 3]).expect("unit"));
         let mut joint = Joint::new(name, parent, child, SE3::identity(), axis);
