@@ -185,7 +185,8 @@ fn candidates(
         path: folder.join(path),
         package: Some((folder.join(name), is_of_ros)),
     };
-    let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let whole = here.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
     let listed = |name: &str| variable(name).map(|list| std::env::split_paths(&list).collect::<Vec<_>>());
     let ros = listed("ROS_PACKAGE_PATH").unwrap_or_default().into_iter().flat_map(|folder| {
         // a folder of packages, or the package itself
@@ -222,6 +223,8 @@ mod tests {
         };
         let found =
             paths(candidates(Path::new("arm.urdf"), "package://arm/a.stl", &MeshFolders::default(), &variables));
+        let here = std::env::current_dir().expect("a folder").canonicalize().expect("a folder");
+        assert!(found.contains(&here.join("arm/a.stl")), "{found:?}");
         for place in ["/ws/src/arm/a.stl", "/opt/ros/share/arm/a.stl"] {
             assert!(found.contains(&PathBuf::from(place)), "{place} in {found:?}");
         }
