@@ -21,7 +21,7 @@ const SOURCES: [&str; 3] = ["crates/mozzi/src", "crates/mozzi-sim/src", "crates/
 const LEFT_ALONE: [&str; 6] =
     ["tests.rs", "/tests/", "mozzi/src/testing", "mozzi/src/accuracy.rs", "mozzi/src/random.rs", "/aarch64/"];
 /// A fault is shown to tests that take about so long without it.
-const PATIENCE: Duration = Duration::from_secs(30);
+const PATIENCE: Duration = Duration::from_secs(120);
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

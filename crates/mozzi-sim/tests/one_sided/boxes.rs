@@ -1,8 +1,8 @@
 //! A box on an incline, with 4 and with 8 contact points.
 
 use super::robots::by;
-use mozzi::{Description, Model, SE3, SO3, Solid, Vec3};
-use mozzi_sim::{ContactPoint, Contacts, Method, Plane, Run, Simulation, Zero};
+use mozzi::{Description, Model, SE3, SO3, Solid, Vec3, Wrench};
+use mozzi_sim::{ContactPoint, Contacts, Method, Plane, Run, Simulation, Zero, applied};
 
 const SIZE: [f64; 3] = [0.3, 0.2, 0.1];
 const G: f64 = 9.81;
@@ -183,4 +183,32 @@ fn boxes_come_to_rest() {
         );
         assert!(speed <= 1e-9 && error < 1e-6 && late == 0, "{speed} {error} {late}");
     }
+}
+
+/// A box that is lifted from where it stuck, carried and let go stays where it lands: its points have forgotten where
+/// they were.
+#[test]
+fn a_box_that_is_carried_away_stays_where_it_is_put() {
+    let model = free_box();
+    let contacts = Contacts { planes: vec![Plane::ground()], ..contacts(&model, 4, 0.8, 0.0) };
+    let frame = model.frame("box").expect("there");
+    let weight = 4.0 * G;
+    // at rest for 0.1 s; up, down and at rest within 0.4 s, and along y likewise
+    let crane = applied(frame, move |t, _, _| {
+        let [along, up] = match t {
+            t if t < 0.1 => [0.0, 0.0],
+            t if t < 0.3 => [8.0, weight + 8.0],
+            t if t < 0.5 => [-8.0, weight - 8.0],
+            _ => [0.0, 0.0],
+        };
+        Wrench { m: Vec3::zero(), f: Vec3([0.0, -along, -up]) } // what the box applies
+    });
+    let simulation = Simulation { contacts, ..Simulation::new(by(Method::MoreauJean, 1.5, 1e-3)) };
+    let start = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5 * SIZE[2]];
+    let run = simulation.run(&model, &start, &[0.0; 6], crane).expect("a motion");
+    let last = run.motion.last();
+    let way = 8.0 / 4.0 * 0.2 * 0.2; // ½ a t² twice
+    println!("carried by {:.6} m, expected {way}, now {:.1e} m high", last.theta[5], last.theta[6] - 0.5 * SIZE[2]);
+    assert!((last.theta[5] - way).abs() < 1e-3 && last.theta[4].abs() < 1e-9, "{:?}", last.theta);
+    assert!((last.theta[6] - 0.5 * SIZE[2]).abs() < 1e-9 && last.dtheta.iter().all(|x| x.abs() < 1e-9));
 }
