@@ -155,17 +155,19 @@ pub(crate) struct Solver {
     of: Scaled,
     /// The last derivative of Newton's method.
     derivative: Option<newton::Derivative>,
+    /// True after a search that did not find enough: the next one, from its best, has one round of the last method.
+    is_hard: bool,
 }
 
 impl Solver {
     pub fn new(G: &DMatrix<f64>, laws: &[Law]) -> Self {
         let is_finite = G.iter().all(|x| x.is_finite());
-        Solver { is_finite, of: Scaled::new(G, laws), derivative: None }
+        Solver { is_finite, of: Scaled::new(G, laws), derivative: None, is_hard: false }
     }
 
     /// As [`solve`].
     pub fn solve(&mut self, b: &DVector<f64>, guess: &DVector<f64>, [sought, enough]: [f64; 2]) -> Solution {
-        let Solver { is_finite, of, derivative } = self;
+        let Solver { is_finite, of, derivative, is_hard } = self;
         let m = b.len();
         assert!(guess.len() == m, "the guess has {} entries, expected {m}", guess.len());
         let mut found = Solution { p: guess.clone(), residual: 0.0, newton_steps: 0, sweeps: 0, admm_iterations: 0 };
@@ -195,7 +197,7 @@ impl Solver {
         }
         if of.residual > enough {
             let mut method = admm::Admm::new(&of.problem, &of.best);
-            for _ in 0..ADMM_ROUNDS {
+            for _ in 0..if *is_hard { 1 } else { ADMM_ROUNDS } {
                 found.admm_iterations += method.iterate(&of.problem, sought, ADMM_CHUNK);
                 let p = method.impulses().clone();
                 of.offer(&p);
@@ -204,6 +206,7 @@ impl Solver {
                     break;
                 }
             }
+            *is_hard = of.residual > enough;
         }
         (found.p, found.residual) = (of.impulses(), of.residual);
         found

@@ -195,7 +195,7 @@ fn assert_satisfied(model: &Model, [theta, dtheta, tau]: [&[f64]; 3], what: &str
 /// ends, and no reason to let them go.
 #[test]
 fn a_thin_rod_in_a_loop_keeps_its_ends() {
-    for thickness in [1e-2, 1e-4, 1e-6] {
+    for thickness in [1e-2, 1e-3, 1e-5] {
         let mut robot = four_bar().description().clone();
         let coupler = robot.links.iter_mut().find(|link| link.name == "coupler").expect("a rod");
         coupler.inertia = Solid::Box([0.8, thickness, thickness]).inertia(0.8);
