@@ -90,7 +90,7 @@ fn what_loses_nothing_is_said() {
             "joint `joint0`: actuatorfrcrange: goes from 2 to -2, expected the lower bound first",
         ),
         (
-            body!("<joint/><geom size='1'/><body name='c'><§inertial mass='0'/></body>"),
+            body!("<joint/><geom size='1'/><body name='c'><§inertial pos='0 0 0' mass='0'/></body>"),
             "missing_attribute",
             "body `c`: inertial: has neither diaginertia nor fullinertia: the moments are 0",
         ),

@@ -26,7 +26,7 @@ pub fn header(place: &dyn Display, from: &mut dyn Read) -> Result<Header> {
 
 /// A .npy file that is cut off, or of another kind than those that are read.
 fn unreadable(place: &dyn Display, what: &str) -> Failure {
-    Failure::wrong(format!("the .npy file {place} cannot be read: {what}"))
+    Failure::wrong(format!("{place} cannot be read as .npy: {what}"))
 }
 
 /// The numbers after a header, by rows; nothing may follow them. `length` is the number of bytes there, if known.
