@@ -268,7 +268,7 @@ fn what_is_wrong_is_named() {
         (
             "inverse-dynamics",
             &cut,
-            "cut.npy cannot be read: there are 568 bytes of numbers, expected those of shape (4, 18)",
+            "cut.npy cannot be read as .npy: there are 568 bytes of numbers, expected those of shape (4, 18)",
         ),
         ("mass-matrix", &theta, "theta.npz: `theta` has shape (4, 5), expected (N, 6) of `ur5`"),
         (
