@@ -83,7 +83,7 @@ fn a_factor_that_all_forces_share_is_noticed() {
     }
 }
 
-/// What the robot's file reveals in a log whose forces are multiplied by a factor for each joint.
+/// Multiplies the forces of a log by a factor for each joint; returns the findings.
 fn suspected(model: &Model, log: &Log, cutoff: f64, factor: impl Fn(usize) -> f64) -> String {
     let (n, filter) = (model.n(), Filter { cutoff: Cutoff::Hz(cutoff), ..Filter::default() });
     let mut log = log.clone();

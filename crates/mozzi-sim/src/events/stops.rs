@@ -95,20 +95,6 @@ impl Stops {
         self.note(t, k, side, 0.0, true);
     }
 
-    /// Records how far joints are beyond the stops that should have held them.
-    pub fn note_excess(&mut self, t: f64, theta: &[f64]) {
-        if self.policy != Policy::Respect {
-            return;
-        }
-        for i in 0..self.sides.len() {
-            let (k, side) = self.sides[i];
-            let excess = self.excess(theta, k, side);
-            if excess > 2.0 * NEAR {
-                self.note(t, k, side, excess, false);
-            }
-        }
-    }
-
     /// How far joint k is beyond its lower (0) or upper (1) bound.
     fn excess(&self, theta: &[f64], k: usize, side: usize) -> f64 {
         let ([low, high], q) = (self.bounds.joints[k], self.bounds.value(theta, k));
@@ -134,19 +120,22 @@ impl Stops {
         note.times += usize::from(again);
     }
 
-    /// Records joints beyond their limits; states come in the order of time.
+    /// Records joints beyond their limits, and beyond stops that should have held them by more than a start may be;
+    /// states come in the order of time.
     pub fn report_at(&mut self, t: f64, theta: &[f64]) {
-        if self.policy != Policy::Report {
-            return;
-        }
+        let (least, counts) = match self.policy {
+            Policy::Ignore => return,
+            Policy::Report => (0.0, true),
+            Policy::Respect => (2.0 * NEAR, false), // impulses are counted
+        };
         for i in 0..self.sides.len() {
             let (k, side) = self.sides[i];
             let excess = self.excess(theta, k, side);
-            if excess > 0.0 {
-                let again = !self.beyond[k][side];
+            if excess > least {
+                let again = counts && !self.beyond[k][side];
                 self.note(t, k, side, excess, again);
             }
-            self.beyond[k][side] = excess > 0.0;
+            self.beyond[k][side] = excess > least;
         }
     }
 

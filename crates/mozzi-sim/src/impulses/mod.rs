@@ -99,7 +99,7 @@ pub(crate) struct Solved {
 
 /// Whether a contact slides before and after the step in about the same direction. Its friction is then opposite to the
 /// mean of its velocities, which is of second order; only the direction counts, so the mean's law is that of b_t + u_t.
-/// What is left of the velocity of a contact that sticks is rounding, and has no direction.
+/// The velocity of a contact that sticks is rounding, and has no direction.
 fn slides_throughout(
     law: Law,
     first: usize,
@@ -206,7 +206,7 @@ impl<'r> Impulses<'r> {
 
     /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
     /// Contacts that slide throughout have their friction at the middle of the step: those of the last solution, or
-    /// more and more of them, without those that do not slide throughout if it is there.
+    /// more and more of them; one that then does not slide throughout is taken out for good.
     pub fn solve(
         &mut self,
         system: &mut System,

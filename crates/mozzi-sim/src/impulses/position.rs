@@ -84,22 +84,7 @@ impl Impulses<'_> {
             if correction == 0 {
                 self.mass.factor(theta, 0.0, &[])?;
             }
-            let mut found = self.nearer(t, theta, open, &errors, &pressed);
-            for addition in 0..=ADDITIONS {
-                let Some(nearer) = found.as_ref().filter(|nearer| nearer.farthest > STILL) else { break };
-                let more = self.pressed(t, &nearer.theta, errors.amax(), &pressed);
-                if more.is_empty() {
-                    break;
-                }
-                if addition == ADDITIONS {
-                    found = None;
-                    break;
-                }
-                pressed.extend(more);
-                (open, errors) = self.open_rows(t, theta, &pressed);
-                found = self.nearer(t, theta, open, &errors, &pressed);
-            }
-            let Some(nearer) = found else { break };
+            let Some(nearer) = self.nearer_without_pressing(t, theta, (open, errors), &mut pressed) else { break };
             theta.copy_from_slice(&nearer.theta);
             changes = true;
             if !nearer.halves {
@@ -110,6 +95,29 @@ impl Impulses<'_> {
         self.set_anchors(t, theta, None);
         self.put_at_limits(theta);
         Ok(changes)
+    }
+
+    /// As [`nearer`](Self::nearer), with rows for the points that it would press into a plane. None if it still does.
+    fn nearer_without_pressing(
+        &mut self,
+        t: f64,
+        theta: &[f64],
+        (mut open, mut errors): (Vec<OpenRow>, DVector<f64>),
+        pressed: &mut Vec<(usize, usize)>,
+    ) -> Option<Nearer> {
+        for _ in 0..=ADDITIONS {
+            let nearer = self.nearer(t, theta, open, &errors, pressed)?;
+            if nearer.farthest <= STILL {
+                return Some(nearer);
+            }
+            let more = self.pressed(t, &nearer.theta, errors.amax(), pressed);
+            if more.is_empty() {
+                return Some(nearer);
+            }
+            pressed.extend(more);
+            (open, errors) = self.open_rows(t, theta, pressed);
+        }
+        None
     }
 
     /// Points that did not carry and are deeper in a plane than the errors that are corrected: a link with little

@@ -65,7 +65,6 @@ impl Course<'_> {
         for (k, side) in impulses.memory.struck.drain(..) {
             self.stops.note_impulse(end, k, side);
         }
-        self.stops.note_excess(end, &self.motion.theta);
         self.note_contacts(end);
         Ok(())
     }

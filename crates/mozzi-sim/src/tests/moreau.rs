@@ -4,7 +4,7 @@ use crate::{Error, Input, Method, Options, Zero, simulate};
 use mozzi::model::description::{Joint, JointKind};
 use mozzi::{Description, SE3, SpatialInertia, Sym3, Vec3, testing};
 
-/// A spring and a damper at every joint, which the step is told of.
+/// A spring and a damper at every joint; the step knows their gains.
 struct Servo;
 
 const STIFFNESS: f64 = 60.0;

@@ -173,12 +173,12 @@ fn rows_of_very_different_sizes_all_hold() {
         let model = loops.with_constraints([cam]).expect("joints");
         let rank = model.constraint_rank(&theta).expect("lengths");
         assert_eq!((rank.rank, rank.rows), (5, 5), "slope {slope}: {:?}", rank.redundant);
-        assert_satisfied(&model, [&theta, &dtheta, &tau], &format!("slope {slope}"));
+        assert_satisfied(&model, [&theta, &dtheta, &tau], &format!("slope {slope}"), 0.0);
     }
 }
 
-/// Each row of Aθ̈ + Ȧθ̇ = 0 holds to its own size.
-fn assert_satisfied(model: &Model, [theta, dtheta, tau]: [&[f64]; 3], what: &str) {
+/// Each row of Aθ̈ + Ȧθ̇ = 0 holds to its own size; one of rounding errors to `rounding`.
+fn assert_satisfied(model: &Model, [theta, dtheta, tau]: [&[f64]; 3], what: &str, rounding: f64) {
     let moved = model.constrained_forward_dynamics(theta, dtheta, tau, &model.environment()).expect("regular");
     let (A, bias, _) = found(model, theta, dtheta);
     for r in 0..A.nrows() {
@@ -187,7 +187,7 @@ fn assert_satisfied(model: &Model, [theta, dtheta, tau]: [&[f64]; 3], what: &str
             sum += a * x;
             size += (a * x).abs();
         }
-        assert!(sum.abs() <= 1e-9 * size + 1e-12, "{what}, row {r}: {sum} of {size}");
+        assert!(sum.abs() <= 1e-9 * size + rounding, "{what}, row {r}: {sum} of {size}");
     }
 }
 
@@ -216,6 +216,6 @@ fn a_thin_rod_in_a_loop_keeps_its_ends() {
         let dtheta = model.assemble_velocities(&theta, &rates, &["crank_pivot"]).expect("moves");
         let mut tau = vec![0.0; 4];
         tau[at("crank_pivot")] = 0.3;
-        assert_satisfied(&model, [&theta, &dtheta, &tau], &format!("{thickness} m"));
+        assert_satisfied(&model, [&theta, &dtheta, &tau], &format!("{thickness} m"), 1e-12);
     }
 }
