@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::contacts::{ContactForce, Contacts};
+use crate::drift::Drift;
 use crate::driven::Driven;
 use crate::events::stops::Stops;
 use crate::events::{Event, Occurrence, first_zero, parts};
@@ -73,6 +74,7 @@ pub(crate) struct Course<'r> {
     /// The step number of the next row, if steps are watched.
     next: usize,
     recorder: &'r mut dyn Recorder,
+    drift: Option<Drift>,
     /// True once the recorder has ended the simulation.
     is_closed: bool,
     pub ending: Ending,
@@ -133,6 +135,7 @@ impl<'r> Course<'r> {
             motion,
             next: options.record_every,
             recorder,
+            drift: Drift::of(model, &options),
             is_closed: false,
         };
         course.start_impulses()?;
@@ -169,7 +172,7 @@ impl<'r> Course<'r> {
                 self.record();
             }
         }
-        Ok(())
+        self.drift.as_ref().map_or(Ok(()), |drift| drift.check(self.motion.t))
     }
 
     /// Nothing can happen within a step: steps of equal length, which end at their own times.
@@ -295,6 +298,7 @@ impl<'r> Course<'r> {
             let contact_forces = forces(&self.impulses);
             let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
             self.is_closed = self.recorder.take(&row).is_break();
+            self.drift.iter_mut().for_each(|drift| drift.add(&row));
         }
         Ok(())
     }
@@ -344,6 +348,7 @@ impl<'r> Course<'r> {
         let contact_forces = forces(&self.impulses);
         let row = Sample { t: *t, theta, dtheta, ddtheta, tau: self.driven.tau(), energy, contact_forces };
         self.is_closed = self.recorder.take(&row).is_break();
+        self.drift.iter_mut().for_each(|drift| drift.add(&row));
     }
 }
 

@@ -37,6 +37,19 @@ pub enum Error {
         /// When, s.
         time: f64,
     },
+    /// The energy of a robot with loops is off by more than a hundredth of the largest kinetic energy.
+    Drifted {
+        /// Its constraints.
+        loops: String,
+        /// J
+        drift: f64,
+        /// The largest so far, J.
+        kinetic: f64,
+        /// When, s.
+        time: f64,
+        /// The steps, and those that may do, s.
+        steps: [f64; 2],
+    },
     /// The state became infinite, NaN or too large.
     Diverged {
         /// "theta", "dtheta" or "ddtheta".
@@ -123,6 +136,15 @@ impl fmt::Display for Error {
                 "the loops close at t = {time} s only if the velocity of `{joint}` jumps by {change:.3e}: the mechanism passes a \
                  change point, where it could go on in two ways, or the step is too long; `rk4` with shorter steps errs least"
             ),
+            Error::Drifted { loops, drift, kinetic, time, steps } => {
+                let [drift, kinetic, time] = [*drift, *kinetic, *time].map(short);
+                write!(
+                    f,
+                    "the energy is off by {drift} J until t = {time} s, and the largest kinetic energy is {kinetic} J: the loops {loops} \
+                     need shorter steps than {} s, such as {} s, or a method of higher order",
+                    steps[0], steps[1]
+                )
+            }
             Error::Diverged { quantity, joint, value, step, time, step_size } => {
                 write!(f, "the simulation diverged: {quantity} of ")?;
                 match joint.as_str() {

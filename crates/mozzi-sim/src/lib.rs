@@ -32,6 +32,7 @@ extern crate alloc;
 mod closing;
 mod contacts;
 mod course;
+mod drift;
 mod driven;
 mod equation;
 mod error;

@@ -56,6 +56,19 @@ pub struct Account {
     pub largest_kinetic_energy: f64,
 }
 
+/// A drift above this part of the largest kinetic energy is an error of the step.
+const OFF: f64 = 0.01;
+/// Smaller motions have too little energy to judge, as a part of the energies' size.
+const MOVES: f64 = 1e-3;
+
+impl Account {
+    /// True if the drift is more than a hundredth of the largest kinetic energy, of a robot that moves.
+    pub fn is_off(&self) -> bool {
+        let size = self.first.potential.abs().max(self.last.potential.abs());
+        self.largest_kinetic_energy > MOVES * size && self.largest_drift > OFF * self.largest_kinetic_energy
+    }
+}
+
 impl Recorder for Account {
     fn take(&mut self, row: &Sample) -> ControlFlow<()> {
         if self.rows == 0 {

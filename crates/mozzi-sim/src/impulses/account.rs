@@ -8,7 +8,7 @@ use crate::one_sided::Solution;
 pub struct OneSidedAccount {
     /// Steps, or parts of a step, with one-sided forces.
     pub steps: usize,
-    /// The largest [natural residual](crate::one_sided::residual) of a step, m/s or rad/s.
+    /// The largest [residual](crate::one_sided::residual) of a step, m/s or rad/s.
     pub largest_residual: f64,
     /// That of the last step.
     pub last_residual: f64,

@@ -3,6 +3,7 @@
 mod account;
 mod near;
 mod position;
+mod rebound;
 mod rows;
 
 pub use account::OneSidedAccount;
@@ -32,9 +33,8 @@ const UNSOLVED: f64 = 1e-6;
 const SHIFTS: usize = 5;
 /// Contacts nearer than this act at least, m: rounding of positions.
 const NEAR: f64 = 1e-8;
-/// An impact rebounds if it is faster than this many times what the contact gains in the step without contact forces: a
-/// loaded foot would else jump for ever.
-const REBOUND: f64 = 4.0;
+/// Impulses that change their contact's velocity by a smaller part of the largest are not known to act.
+const CARRIES: f64 = 1e-9;
 /// A contact that stuck is reported to slide above the first speed, one that slid to stick below the second, m/s.
 const SLIDES: f64 = 1e-6;
 const STICKS: f64 = 1e-9;
@@ -71,6 +71,8 @@ pub(crate) struct Memory {
     rebounds: BTreeMap<(usize, usize), f64>,
     /// How far points that came to rest within the step would have to go back, along t₁ and t₂.
     stopped: BTreeMap<(usize, usize), [f64; 2]>,
+    /// Points within reach for which others of their body act.
+    stands_for: Vec<(usize, usize)>,
     /// The contacts and stops that carried in the last step, and whether they stick.
     pub carrying: Vec<(Key, bool)>,
     /// The contacts and stops that carried since they were near, and whether they stick.
@@ -80,6 +82,11 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
+    /// Whether this block of rows acted in the last step.
+    fn acted(&self, key: Key) -> bool {
+        self.warm.binary_search_by_key(&key, |(key, _)| *key).is_ok()
+    }
+
     /// The forces alone.
     pub fn guess(self) -> Self {
         Memory { warm: self.warm, ..Memory::default() }
@@ -204,7 +211,8 @@ impl<'r> Impulses<'r> {
         p
     }
 
-    /// Solves for the impulses, from b (without restitution) and the velocities of the surroundings u₀ before the step.
+    /// Solves for the impulses of a step of h seconds, from b (without restitution) and the velocities of the
+    /// surroundings u₀ before it.
     /// Contacts that slide throughout have their friction at the middle of the step: those of the last solution, or
     /// more and more of them; one that then does not slide throughout is taken out for good.
     pub fn solve(
@@ -213,18 +221,18 @@ impl<'r> Impulses<'r> {
         free: DVector<f64>,
         before: &DVector<f64>,
         guess: &DVector<f64>,
+        h: f64,
     ) -> Solved {
         let mut b = free.clone();
         for &(key, first, _) in &system.rows {
-            let gain = (before[first] - free[first]).max(0.0);
-            match key {
-                Key::Contact(point, _) if -before[first] > REBOUND * gain => {
-                    b[first] += self.contacts.points[point].restitution * before[first];
-                }
-                // what opens at first must not be pushed: its mean velocity stays positive
-                Key::Contact(..) | Key::Stop(..) => b[first] += before[first].max(0.0),
-                _ => {}
+            // what opens at first must not be pushed: its mean velocity stays positive
+            if let Key::Contact(..) | Key::Stop(..) = key {
+                b[first] += before[first].max(0.0);
             }
+        }
+        for touching in &system.touches {
+            let rebound = self.rebound(touching, before[touching.first], free[touching.first], h);
+            b[touching.first] -= rebound.map_or(0.0, |rebound| rebound.speed);
         }
         let size = b.amax().max(LEAST);
         let tolerances = TOLERANCES.map(|tolerance| tolerance * size);
@@ -262,15 +270,17 @@ impl<'r> Impulses<'r> {
     /// Remembers the impulses of a step of h seconds that counts.
     pub fn keep(&mut self, system: &System, solved: &Solved, h: f64) {
         self.account.keep(solved.residual, solved.p.len());
-        let Memory { warm, carrying, touching, struck, .. } = &mut self.memory;
-        let touched = core::mem::take(touching);
+        let Memory { warm, carrying, touching, struck, stands_for, .. } = &mut self.memory;
+        let mut touched = core::mem::take(touching);
         carrying.clear();
         warm.clear();
+        let least = CARRIES * solved.free.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
         for &(key, first, law) in &system.rows {
             let mut force = [0.0; 3];
             (0..law.rows()).for_each(|k| force[k] = solved.p[first + k] / h);
             warm.push((key, force));
-            let (carries, sticks) = (force[0] > 0.0, solved.sticks(system, first, law));
+            let carries = solved.p[first] * system.G[(first, first)] > least;
+            let sticks = solved.sticks(system, first, law);
             match key {
                 Key::Contact(..) => {
                     let before = touched.iter().find(|(other, _)| *other == key).map(|&(_, sticks)| sticks);
@@ -295,22 +305,12 @@ impl<'r> Impulses<'r> {
             }
         }
         warm.sort_unstable_by_key(|(key, _)| *key);
+        // what others stand for has not lifted off
+        touched.retain(|(key, _)| matches!(key, Key::Contact(k, plane) if stands_for.contains(&(*k, *plane))));
+        touching.append(&mut touched);
         self.note_rebounds(system, solved, h);
         self.note_stopped(system, solved, h);
         self.add_impulses(system, &solved.p);
-    }
-
-    /// Contacts that came, and go at the end of the step, touched within it: after t_c = gap/|u_n|, and are (h −
-    /// t_c)u_n⁺ away at its end.
-    fn note_rebounds(&mut self, system: &System, solved: &Solved, h: f64) {
-        self.memory.rebounds.clear();
-        for &Touching { pair, first, gap, .. } in &system.touches {
-            let (comes, goes) = (solved.before[first], solved.u[first]);
-            if comes < 0.0 && goes > 0.0 && solved.p[first] > 0.0 {
-                let touches = ((gap - 0.5 * h * comes) / -comes).clamp(0.0, h);
-                self.memory.rebounds.insert(pair, (h - touches) * goes);
-            }
-        }
     }
 
     /// Contacts that slid and stick at the end of the step move until they stop, after t_s = h|u_t|/(|u_t| − s), with s

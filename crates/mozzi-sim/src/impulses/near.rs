@@ -15,8 +15,10 @@ const MOST: usize = 8;
 /// Points that do not touch act if they are nearer than this part of their body's size: else a long step would take its
 /// upper side for a foot.
 const SHARE: f64 = 2e-3;
-/// Points that carried in the last step count as if they were farther from others by this factor.
-const CARRIED: f64 = 1.02;
+/// The points of the last step act again, unless one is deeper by more than this, m, or others would leave no candidate
+/// nearly as far from all that act: bodies at rest would stand on other points in each step.
+const DEEPER: f64 = 1e-8;
+const NEARER: f64 = 0.9;
 
 /// The contact points of a frame, within a sphere.
 pub(super) struct Cloud {
@@ -27,12 +29,21 @@ pub(super) struct Cloud {
     radius: f64,
 }
 
-/// A point that may touch, and how deep it may come.
+/// A point that may touch, how deep it may come, and whether it acted in the last step.
 struct Candidate {
     point: usize,
     touch: Touch,
     gap: f64,
-    carried: bool,
+    acted: bool,
+}
+
+/// The pairs of a point and a plane within reach.
+#[derive(Default)]
+pub(super) struct Near {
+    /// Those that act. Those of a frame follow each other.
+    pub acting: Vec<(usize, usize, Touch)>,
+    /// Those that others of their body stand for.
+    pub others: Vec<(usize, usize)>,
 }
 
 impl Cloud {
@@ -57,11 +68,10 @@ impl Cloud {
 }
 
 impl Impulses<'_> {
-    /// The pairs of a point and a plane within reach at θ, or at the robot's next configuration at the time `then`;
-    /// with their touch at θ. Those of a frame follow each other.
-    pub fn near(&self, [t, then]: [f64; 2], theta: &[f64], next: &[f64]) -> Vec<(usize, usize, Touch)> {
+    /// The pairs within reach at θ, or at the robot's next configuration at the time `then`; with their touch at θ.
+    pub(super) fn near(&self, [t, then]: [f64; 2], theta: &[f64], next: &[f64]) -> Near {
         let (now, later) = (self.surfaces(t), self.surfaces(then));
-        let mut found = Vec::new();
+        let mut found = Near::default();
         for cloud in &self.clouds {
             let [T, T_next] = [theta, next].map(|theta| forward_kinematics(self.model, theta, cloud.frame));
             for (plane, (surface, surface_next)) in now.iter().zip(&later).enumerate() {
@@ -81,49 +91,59 @@ impl Impulses<'_> {
                     let gap = now.min(then);
                     (gap <= reach).then(|| {
                         let key = Key::Contact(point, plane);
-                        let carried = self.memory.carrying.iter().any(|&(other, _)| other == key);
-                        Candidate { point, touch: surface.touch(of, T), gap, carried }
+                        let acted = self.memory.acted(key);
+                        Candidate { point, touch: surface.touch(of, T), gap, acted }
                     })
                 };
-                let near = cloud.points.iter().filter_map(candidate);
-                found.extend(few(near.collect()).into_iter().map(|one| (one.point, plane, one.touch)));
+                let near: Vec<Candidate> = cloud.points.iter().filter_map(candidate).collect();
+                let acting = few(&near);
+                for (k, one) in near.into_iter().enumerate() {
+                    if acting.contains(&k) {
+                        found.acting.push((one.point, plane, one.touch));
+                    } else {
+                        found.others.push((one.point, plane));
+                    }
+                }
             }
         }
         found
     }
 }
 
-/// At most [`MOST`] of them, in their order.
-fn few(mut all: Vec<Candidate>) -> Vec<Candidate> {
+/// The numbers of at most [`MOST`] of them.
+fn few(all: &[Candidate]) -> Vec<usize> {
     if all.len() <= MOST {
-        return all;
+        return (0..all.len()).collect();
     }
-    let weight = |of: &Candidate| if of.carried { CARRIED } else { 1.0 };
-    let deepest = all.iter().enumerate().min_by(|(_, a), (_, b)| a.gap.total_cmp(&b.gap)).map_or(0, |(k, _)| k);
-    let mut chosen = alloc::vec![deepest];
-    let mut distances: Vec<f64> = alloc::vec![f64::INFINITY; all.len()];
-    while chosen.len() < MOST {
-        let last = all[chosen[chosen.len() - 1]].touch.at;
-        for (distance, one) in distances.iter_mut().zip(&all) {
-            *distance = distance.min((one.touch.at - last).norm() * weight(one));
+    let deepest = |of: &[usize]| of.iter().copied().min_by(|&a, &b| all[a].gap.total_cmp(&all[b].gap));
+    let every: Vec<usize> = (0..all.len()).collect();
+    let before: Vec<usize> = every.iter().copied().filter(|&k| all[k].acted).collect();
+    let first = deepest(&every).unwrap_or(0);
+    // how far each is from those chosen
+    let apart = |distances: &mut [f64], chosen: usize| {
+        for (distance, one) in distances.iter_mut().zip(all) {
+            *distance = distance.min((one.touch.at - all[chosen].touch.at).norm());
         }
-        let farthest = (0..all.len()).max_by(|&a, &b| distances[a].total_cmp(&distances[b]));
-        match farthest.filter(|&k| distances[k] > 0.0) {
-            Some(k) => chosen.push(k),
-            None => break,
-        }
+    };
+    let farthest = |distances: &[f64]| every.iter().copied().max_by(|&a, &b| distances[a].total_cmp(&distances[b]));
+    let (mut chosen, mut distances) = (Vec::with_capacity(MOST), alloc::vec![f64::INFINITY; all.len()]);
+    let mut next = Some(first);
+    while let Some(k) = next.filter(|&k| distances[k] > 0.0 && chosen.len() < MOST) {
+        chosen.push(k);
+        apart(&mut distances, k);
+        next = farthest(&distances);
     }
-    let mut k = 0;
-    all.retain(|_| {
-        k += 1;
-        chosen.contains(&(k - 1))
-    });
-    all
+    let left = |distances: &[f64]| distances.iter().copied().fold(0.0, f64::max);
+    let mut distances_before = alloc::vec![f64::INFINITY; all.len()];
+    before.iter().for_each(|&k| apart(&mut distances_before, k));
+    let is_as_deep = deepest(&before).is_some_and(|k| all[k].gap <= all[first].gap + DEEPER);
+    let serves = is_as_deep && before.len() <= MOST && NEARER * left(&distances_before) <= left(&distances);
+    if serves { before } else { chosen }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{CARRIED, Candidate, MOST, few};
+    use super::{Candidate, MOST, few};
     use crate::contacts::Touch;
     use alloc::vec::Vec;
     use mozzi::linalg::Vec3;
@@ -138,7 +158,7 @@ mod tests {
             speeds: [0.0; 3],
             gap,
         };
-        Candidate { point, touch, gap, carried: false }
+        Candidate { point, touch, gap, acted: false }
     }
 
     #[test]
@@ -146,19 +166,24 @@ mod tests {
         // a grid of 11 × 11, deepest near the middle
         let grid = |k: usize| [(k % 11) as f64 - 5.0, (k / 11) as f64 - 5.0];
         let all = || (0..121).map(|k| candidate(k, grid(k), if k == 61 { -1e-6 } else { 0.0 })).collect::<Vec<_>>();
-        let points = |found: &[Candidate]| found.iter().map(|one| one.point).collect::<Vec<_>>();
-        let found = few(all());
+        let found = few(&all());
         assert_eq!(found.len(), MOST);
         for corner in [0, 10, 110, 120, 61] {
-            assert!(points(&found).contains(&corner), "{corner} in {:?}", points(&found));
+            assert!(found.contains(&corner), "{corner} in {found:?}");
         }
-        assert!(found.is_sorted_by_key(|one| one.point));
-        // of points that are as far, those that carried before
-        let mut again = all();
-        again.iter_mut().filter(|one| [55, 65].contains(&one.point)).for_each(|one| one.carried = true);
-        assert!(CARRIED > 1.0 && points(&few(again)).contains(&55));
+        // those that acted before act again, if they are as far apart and as deep
+        let again = |points: &[usize], deep: f64| {
+            let mut again = all();
+            points.iter().for_each(|&k| again[k].acted = true);
+            again[60].gap = deep;
+            few(&again)
+        };
+        let other = [0, 5, 10, 55, 61, 110, 115, 120];
+        assert!(other != found[..] && again(&other, 0.0) == other);
+        assert!(again(&other, -2e-6).contains(&60) && again(&[0, 1, 2, 3, 4, 5, 6, 61], 0.0).contains(&120));
         // at one place there is one
-        assert_eq!(few((0..20).map(|k| candidate(k, [1.0, 2.0], 0.0)).collect()).len(), 1);
-        assert_eq!(few((0..8).map(|k| candidate(k, [1.0, 2.0], 0.0)).collect()).len(), 8);
+        let same = |count| (0..count).map(|k| candidate(k, [1.0, 2.0], 0.0)).collect::<Vec<_>>();
+        assert_eq!(few(&same(20)).len(), 1);
+        assert_eq!(few(&same(8)).len(), 8);
     }
 }

@@ -126,7 +126,7 @@ impl Impulses<'_> {
         let carries = |pair: (usize, usize)| {
             self.memory.carrying.iter().any(|&(key, _)| key == Key::Contact(pair.0, pair.1)) || known.contains(&pair)
         };
-        let near = self.near([t, t], theta, theta).into_iter();
+        let near = self.near([t, t], theta, theta).acting.into_iter();
         let deep = near.filter(|(.., touch)| touch.gap < -error.max(CLOSED));
         deep.map(|(point, plane, _)| (point, plane)).filter(|&pair| !carries(pair)).collect()
     }

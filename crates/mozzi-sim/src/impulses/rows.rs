@@ -159,14 +159,15 @@ impl Impulses<'_> {
         }
         let mut columns = (None, Vec::new());
         let near = self.near([t, t + 0.5 * h], theta, next);
-        let all = w.len() + 3 * near.len();
+        self.memory.stands_for = near.others;
+        let all = w.len() + 3 * near.acting.len();
         if all > MOST_ROWS {
             let what = "the number of forces at contacts, stops and constraints";
             return Err(
                 mozzi::Error::BadArgument { what, found: all.to_string(), expected: "at most 6000 at once" }.into()
             );
         }
-        for (point, plane, touch) in near {
+        for (point, plane, touch) in near.acting {
             let key = Key::Contact(point, plane);
             let of = &self.contacts.points[point];
             let first = w.len();

@@ -3,6 +3,7 @@
 pub(crate) mod dense;
 pub(crate) mod dormand_prince;
 mod explicit;
+mod free_bodies;
 mod impulse_steps;
 pub(crate) mod midpoint;
 pub(crate) mod moreau;

@@ -11,14 +11,12 @@ use crate::driven::Driven;
 use crate::equation::Equation;
 use crate::events::bisect_until;
 use crate::impulses::{Impulses, Key, Solved, System};
+use crate::methods::free_bodies::{end_of, frame_rates, straight, turned};
 use crate::one_sided::Law;
 use crate::{Input, Powers};
 use alloc::vec;
 use alloc::vec::Vec;
-use mozzi::lie::SO3;
-use mozzi::linalg::Vec3;
-use mozzi::model::integrate;
-use mozzi::model::{Freedom, Model, Place};
+use mozzi::model::Model;
 
 /// Evaluations of the smooth forces: with θ̇, then with ½(θ̇ + θ̇⁺), until θ̇⁺ changes by less than `SETTLED`, relative
 /// to 1 + |θ̇⁺|.
@@ -29,6 +27,10 @@ const UNSETTLED: f64 = 1e-6;
 /// A step is halved until it settles and loops close, at most to this part of it: of a robot with loops, and of others,
 /// whose steps do not settle where contacts begin or end to hold, at any length.
 const SHORTEST: [f64; 2] = [1.0 / 64.0, 1.0 / 8.0];
+/// A step that lifts contacts by more than this part of the largest kinetic energy so far is too long, unless the robot
+/// starts at rest, or is lifted by less than `LEAST_LIFT`, m.
+const LIFTED: f64 = 5e-4;
+const LEAST_LIFT: f64 = 1e-6;
 /// A step is divided at most this often.
 const DIVISIONS: usize = 8;
 /// The time at which a joint comes to rest is found in fewer tries, unless its speed jumps: by an impact.
@@ -42,6 +44,8 @@ pub(crate) struct Moreau {
     joints: [Vec<f64>; 2],
     gains: [Vec<f64>; 2],
     implicit: [Vec<f64>; 2],
+    /// The largest kinetic energy so far, J.
+    largest: f64,
 }
 
 /// Where a step starts.
@@ -67,7 +71,12 @@ impl Moreau {
     pub fn new(model: &Model) -> Self {
         let n = model.n();
         let zeros = || [vec![0.0; n], vec![0.0; n]];
-        Moreau { joints: [model.stiffness(), model.damping().to_vec()], gains: zeros(), implicit: zeros() }
+        Moreau {
+            joints: [model.stiffness(), model.damping().to_vec()],
+            gains: zeros(),
+            implicit: zeros(),
+            largest: 0.0,
+        }
     }
 
     /// A step of h seconds: in parts of half the length, and so on, where its iteration does not contract, or a loop
@@ -105,8 +114,8 @@ impl Moreau {
         Ok(())
     }
 
-    /// A part of a step, of h seconds, then positions and loops put right. False if its iteration does not contract, or
-    /// a joint is beyond its stop, unless it counts nevertheless.
+    /// A part of a step, of h seconds, then positions and loops put right. False if its iteration does not contract, it
+    /// lifts the robot by much energy, or a joint is beyond its stop, unless it counts nevertheless.
     fn part<I: Input>(
         &mut self,
         driven: &mut Driven<'_, I>,
@@ -116,6 +125,7 @@ impl Moreau {
         counts: bool,
     ) -> Result<bool, Error> {
         let (equation, end) = (&mut driven.equation, state.t + h);
+        self.largest = self.largest.max(equation.energy(&state.theta, &state.dtheta, state.works).kinetic);
         let mut rest = h;
         for division in 0..=DIVISIONS {
             impulses.passed.clear();
@@ -155,6 +165,10 @@ impl Moreau {
         if let (true, Some(before)) = (corrects, before) {
             let after = driven.equation.energy(&state.theta, &state.dtheta, state.works);
             let lifted = after.kinetic + after.potential - before.kinetic - before.potential;
+            let weight = impulses.model.mass() * driven.equation.gravity.norm();
+            if !counts && self.largest > 0.0 && lifted > LIFTED * self.largest + LEAST_LIFT * weight {
+                return Ok(false);
+            }
             impulses.account.lifted += lifted;
             // what touched did so earlier or later in the step, at another speed: the contacts' loss is that much less
             state.works[1] -= lifted;
@@ -248,7 +262,7 @@ impl Moreau {
                 let differs = impulses.relative_at(&system, end, &to.theta, &to.dtheta) - system.relative(&after);
                 add(&v, &force, &mut after);
                 let b = system.relative(&after) + differs;
-                let found = impulses.solve(&mut system, b, &before, &p);
+                let found = impulses.solve(&mut system, b, &before, &p, h);
                 impulses.apply(&system, &found.p, &mut after);
                 p.copy_from(&found.p);
                 solved = Some(found);
@@ -307,69 +321,6 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 fn add(v: &[f64], change: &[f64], x: &mut [f64]) {
     x.copy_from_slice(v);
     x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
-}
-
-fn vector(x: &[f64], at: usize) -> Vec3 {
-    Vec3([x[at], x[at + 1], x[at + 2]])
-}
-
-/// The places that move freely: a floating base, free joints.
-fn free_places(model: &Model) -> impl Iterator<Item = &Place> {
-    model.configuration_space().places().iter().filter(|place| place.freedom == Freedom::Free)
-}
-
-/// θ ← θ ⊕ hθ̇, where the origins of floating bodies move straight, not on screws: a wheel that rolls has velocities
-/// that turn in its own axes.
-fn straight(model: &Model, theta: &mut [f64], dtheta: &[f64], h: f64) {
-    let starts: Vec<(usize, Vec3)> =
-        free_places(model).map(|place| (place.q, origin(theta, place, dtheta, h))).collect();
-    integrate(model, theta, dtheta, h);
-    for (q, p) in starts {
-        theta[q + 4..q + 7].copy_from_slice(&p.0);
-    }
-}
-
-/// p + h R v.
-fn origin(theta: &[f64], place: &Place, dtheta: &[f64], h: f64) -> Vec3 {
-    let q = &theta[place.q..];
-    let R = SO3::from_quaternion(q[0], vector(q, 1));
-    vector(q, 4) + R * vector(dtheta, place.j + 3) * h
-}
-
-/// x with the linear velocities of floating bodies in axes that are turned by h ω.
-fn turned(model: &Model, x: &[f64], omega: &[f64], h: f64) -> Vec<f64> {
-    let mut x = x.to_vec();
-    for place in free_places(model) {
-        let v = SO3::exp(vector(omega, place.j) * h) * vector(&x, place.j + 3);
-        x[place.j + 3..place.j + 6].copy_from_slice(&v.0);
-    }
-    x
-}
-
-/// θ̈ of floating bodies whose linear velocities are constant in axes that do not turn: v̇ = −ω × v.
-fn frame_rates(model: &Model, dtheta: &[f64]) -> Vec<f64> {
-    let mut rates = vec![0.0; dtheta.len()];
-    for place in free_places(model) {
-        let v = vector(dtheta, place.j + 3).cross(vector(dtheta, place.j));
-        rates[place.j + 3..place.j + 6].copy_from_slice(&v.0);
-    }
-    rates
-}
-
-/// The end of a step: from the velocities at both ends in the axes of the middle.
-fn end_of(model: &Model, state: &Phase, v: &[f64], after: &[f64], h: f64, to: &mut Phase) {
-    let mean: Vec<f64> = v.iter().zip(after).map(|(a, b)| 0.5 * (a + b)).collect();
-    to.theta.copy_from_slice(&state.theta);
-    integrate(model, &mut to.theta, &mean, h);
-    to.dtheta.copy_from_slice(after);
-    for place in free_places(model) {
-        let turn = |theta: &[f64]| SO3::from_quaternion(theta[place.q], vector(theta, place.q + 1));
-        let middle = turn(&state.theta) * SO3::exp(vector(&state.dtheta, place.j) * (0.5 * h));
-        let p = vector(&state.theta, place.q + 4) + middle * vector(&mean, place.j + 3) * h;
-        to.theta[place.q + 4..place.q + 7].copy_from_slice(&p.0);
-        let v = turn(&to.theta).inverse() * (middle * vector(after, place.j + 3));
-        to.dtheta[place.j + 3..place.j + 6].copy_from_slice(&v.0);
-    }
 }
 
 /// The joints with dry friction that move at the start and are at rest, or move back, at the end, but for those that a

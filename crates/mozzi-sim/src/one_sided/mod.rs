@@ -44,7 +44,7 @@ pub struct Problem {
 pub struct Solution {
     /// p, m: N s and N m s.
     pub p: DVector<f64>,
-    /// The natural residual of p: see [`residual`].
+    /// See [`residual`].
     pub residual: f64,
     /// Newton steps.
     pub newton_steps: usize,
@@ -111,33 +111,21 @@ fn blocks(laws: &[Law]) -> impl Iterator<Item = (usize, Law)> + '_ {
     })
 }
 
-/// The natural residual of impulses, a velocity: max g ‖p − Π_K(p − (u + s)/g)‖ over the rows, with s = μ‖u_t‖ along
-/// the normal of a contact (De Saxcé and Feng 1998) and g the mean of the block's diagonal of G. It is 0 exactly for a
-/// solution.
+/// How far impulses are from a solution, a velocity: the largest g|F_r| over the rows, with g the mean of the block's
+/// diagonal of G, and with G scaled to 1 there F = u where a block holds, else p less the impulse that its law makes of
+/// p − u. It is 0 exactly for a solution. A contact's friction is limited by μ times its own normal argument (Alart
+/// and Curnier 1991): De Saxcé's term μ‖u_t‖ would multiply rounding by μ.
 pub fn residual(problem: &Problem, p: &DVector<f64>) -> f64 {
     let mut of = Scaled::new(&problem.G, &problem.laws);
     of.begin(&problem.b, p);
     of.residual
 }
 
-/// The natural residual of a scaled problem, in which g is 1. Each row's error is multiplied by its factor.
+/// The residual of a scaled problem, in which g is 1. Each row's error is multiplied by its factor.
 fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
-    let u = problem.velocity(p);
-    let (mut most, mut x) = (0.0_f64, [0.0; 3]);
-    for (first, law) in problem.blocks() {
-        let rows = first..first + law.rows();
-        let shift = law.shift(&u.as_slice()[rows.clone()]);
-        let x = &mut x[..law.rows()];
-        for (k, r) in rows.clone().enumerate() {
-            x[k] = p[r] - u[r] - if k == 0 { shift } else { 0.0 };
-        }
-        law.project(x);
-        for (k, r) in rows.enumerate() {
-            let error = (p[r] - x[k]).abs() * factors[r];
-            most = if error <= most { most } else { error }; // NaN passes
-        }
-    }
-    most
+    let errors = newton::Function::at(problem, p).F;
+    let largest = |most: f64, error: f64| if error <= most { most } else { error }; // NaN passes
+    errors.iter().zip(factors).map(|(error, factor)| error.abs() * factor).fold(0.0, largest)
 }
 
 /// Impulses from a guess of m numbers, whose residual is at most `sought`; at most `enough` where Newton steps and

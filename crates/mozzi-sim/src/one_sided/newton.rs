@@ -89,17 +89,16 @@ enum Side {
     Slides,
 }
 
-/// F(p): u where a block holds, p − Π(p − u) elsewhere. The radius of a contact's disc is μ times its normal argument,
-/// so that De Saxcé's term is not needed.
-struct Function {
+/// F(p): u where a block holds, p − Π(p − u) elsewhere. The radius of a contact's disc is μ times its normal argument.
+pub(super) struct Function {
     u: DVector<f64>,
-    F: DVector<f64>,
+    pub F: DVector<f64>,
     /// One for each block.
     sides: Vec<Side>,
 }
 
 impl Function {
-    fn at(problem: &Problem, p: &DVector<f64>) -> Self {
+    pub fn at(problem: &Problem, p: &DVector<f64>) -> Self {
         let u = problem.velocity(p);
         let (mut F, mut sides) = (u.clone(), Vec::with_capacity(problem.laws.len()));
         for (i, law) in problem.blocks() {

@@ -116,7 +116,9 @@ fn one_contact_is_solved_exactly() {
 
 #[test]
 fn random_contacts_satisfy_their_laws() {
-    for (count, rank, mu) in [(4, 12, 0.3), (4, 12, 1.0), (8, 24, 0.5), (8, 12, 0.3), (8, 12, 1.0)] {
+    for (count, rank, mu) in
+        [(4, 12, 0.3), (4, 12, 1.0), (8, 24, 0.5), (8, 12, 0.3), (8, 12, 1.0), (4, 12, 1e4), (8, 24, 1e6)]
+    {
         let (mut random, mut worst, mut effort) = (Random(count as u64 + rank as u64), 0.0_f64, [0; 3]);
         let mut missed = 0;
         for _ in 0..40 {
@@ -134,7 +136,8 @@ fn random_contacts_satisfy_their_laws() {
             "{count} contacts, rank {rank}, μ {mu}: {missed} of 40 above 1e-10, worst violation {worst:.1e}, mean steps {:?}",
             effort.map(|x| x / 40)
         );
-        assert!(missed <= if rank < 3 * count { 6 } else { 0 } && worst < 1e-8);
+        // redundant rows; or a jam, in which friction opens what presses
+        assert!(missed <= if rank < 3 * count || mu > 1.0 { 6 } else { 0 } && worst < 1e-8);
     }
 }
 
@@ -145,10 +148,10 @@ fn constraints_stops_friction_and_contacts_are_solved_together() {
         for _ in 0..40 {
             let problem = mixed(&mut random, is_redundant);
             let found = solve(&problem, &zeros(&problem), [1e-12, 1e-8]);
-            missed += usize::from(found.residual > 1e-10);
+            missed += usize::from(found.residual > CLOSE * 1e-12);
             worst = worst.max(violation(&problem, &found.p));
         }
-        std::println!("redundant {is_redundant}: {missed} of 40 above 1e-10, worst violation {worst:.1e}");
+        std::println!("redundant {is_redundant}: {missed} of 40 not close, worst violation {worst:.1e}");
         assert!(missed == 0 && worst < 1e-8);
     }
 }

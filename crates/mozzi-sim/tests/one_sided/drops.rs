@@ -55,6 +55,29 @@ fn a_thousand_drops_end_and_lose_energy() {
 }
 
 #[test]
+fn steps_that_would_lift_much_are_halved() {
+    let (mut worst, mut halvings) = (0.0_f64, 0);
+    for seed in 0..60 {
+        let (model, contacts) = robot(seed);
+        let [mut theta, dtheta, _] = testing::state(&model, seed);
+        let lowest = contacts.gaps(&model, 0.0, &theta).into_iter().fold(f64::INFINITY, f64::min);
+        theta[6] += 0.05 - lowest;
+        let options = Options { joint_limits: Policy::Ignore, ..by(Method::Automatic, 1.0, 1e-2) };
+        let run = Simulation { contacts, ..Simulation::new(options) }.run(&model, &theta, &dtheta, Zero);
+        let run = run.unwrap_or_else(|error| panic!("{seed}: {error}"));
+        halvings += run.one_sided.expect("contacts").halvings;
+        let mut least = f64::INFINITY;
+        for energy in &run.motion.energy {
+            let now = energy.kinetic + energy.potential;
+            worst = worst.max((now - least) / run.motion.largest_kinetic_energy());
+            least = least.min(now);
+        }
+    }
+    println!("largest gain {worst:.1e} of the kinetic energy, {halvings} halvings");
+    assert!(worst < 1e-3);
+}
+
+#[test]
 fn positions_are_not_put_right_by_throwing_light_links() {
     // a box on four corners, and a knob whose point is 10 µm beside its hinge and 10 µm too deep: a turn would lift it
     let knob = SpatialInertia { mass: 0.01, mc: Vec3::zero(), I: Sym3::diagonal(1e-6, 1e-6, 1e-6) };
