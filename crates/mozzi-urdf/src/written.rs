@@ -46,7 +46,7 @@ pub(crate) fn names_of(what: &str, names: &[&str]) -> Option<String> {
     }
 }
 
-/// What a format without forces of free joints cannot express of one: "joint `f`: damping 1 of a free joint".
+/// The forces and the rotor of a free joint, for formats without them: "joint `f`: damping 1 of a free joint".
 pub(crate) fn of_free_joint(joint: &Joint) -> Option<String> {
     let all = [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)];
     let found = all.into_iter().filter(|(_, value)| *value != 0.0).map(|(what, value)| format!("{what} {value}"));

@@ -139,7 +139,9 @@ fn damping_ratios_are_of_independent_joints() {
          gear='2' kp='100' dampratio='0.5'/><position tendon='t' kp='50' dampratio='0.7'/></actuator></mujoco>"
     );
     let found = actuation(&text);
-    for (one, damping) in found.actuators.iter().flatten().zip([3.1531743569589543, 0.31475577606520955, 0.10873993649208184]) {
+    for (one, damping) in
+        found.actuators.iter().flatten().zip([3.1531743569589543, 0.31475577606520955, 0.10873993649208184])
+    {
         assert!((one.bias[2] + damping).abs() < 1e-12 * damping, "{}: {} {damping}", one.name, one.bias[2]);
     }
 }
