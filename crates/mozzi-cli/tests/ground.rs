@@ -155,6 +155,30 @@ fn a_start_in_the_ground_is_lifted_and_a_deep_one_is_refused() {
     assert!(said.contains("8 contact points, 1 plane"), "{said}");
 }
 
+/// Two rods whose tips are tied: they close beyond the limits of the first.
+#[test]
+fn a_loop_that_limits_keep_open_names_other_starts() {
+    let rod = |name: &str, x: f64, range: &str| {
+        format!(
+            "<body name='{name}' pos='{x} 0 1'><joint name='j{name}' axis='0 1 0' range='{range}'/>\
+             <geom type='capsule' fromto='0 0 0 0 0 0.5' size='0.02'/>\
+             <site name='{name}' pos='0 0 0.5'/></body>"
+        )
+    };
+    let tie = "<equality><connect site1='a' site2='b'/></equality>";
+    let (a, b) = (rod("a", 0.0, "0.5 2"), rod("b", 0.4, "-3 3"));
+    let key = "<keyframe><key name='home' qpos='2.73007580752231 -2.73007580752231'/></keyframe>";
+    let world = format!("<worldbody><geom type='plane' size='1 1 1'/>{a}{b}</worldbody>");
+    let robot = format!("<mujoco><compiler angle='radian'/>{world}{tie}{key}</mujoco>");
+    let robot = file(&folder("kept_open"), "rods.xml", &robot);
+    let (_, said) = complaint(&["simulate", &robot, "--ground", "--time", "0.01"]);
+    assert!(
+        said.contains("near the guess; `--state home` starts there; `--joint-limits ignore` starts beyond limits"),
+        "{said}"
+    );
+    json(&["simulate", &robot, "--ground", "--time", "0.01", "--joint-limits", "ignore"]);
+}
+
 /// A pinned foot is where it stands on the ground, and loops are closed before the robot is put there.
 #[test]
 fn pinned_and_closed_robots_start_on_the_ground() {

@@ -1,5 +1,6 @@
 //! The result of writing a robot in a format.
 
+use mozzi::model::description::Joint;
 use std::fmt;
 
 /// A robot's text in a format, and the properties that the format cannot express.
@@ -43,4 +44,12 @@ pub(crate) fn names_of(what: &str, names: &[&str]) -> Option<String> {
         1 => Some(format!("{what} {}", shown.join(", "))),
         count => Some(format!("{what} {} ({count})", shown.join(", "))),
     }
+}
+
+/// The forces and the rotor of a free joint, for formats without them: "joint `f`: damping 1 of a free joint".
+pub(crate) fn of_free_joint(joint: &Joint) -> Option<String> {
+    let all = [("damping", joint.damping), ("friction", joint.friction), ("armature", joint.armature)];
+    let found = all.into_iter().filter(|(_, value)| *value != 0.0).map(|(what, value)| format!("{what} {value}"));
+    let found: Vec<String> = found.collect();
+    (!found.is_empty()).then(|| format!("joint `{}`: {} of a free joint", joint.name, found.join(", ")))
 }

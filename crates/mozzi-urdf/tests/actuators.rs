@@ -122,6 +122,30 @@ fn a_default_of_one_kind_is_not_that_of_another() {
     }
 }
 
+/// The damping of MuJoCo 4.0.0, −biasprm[2], of a joint, of one that follows it, and of a tendon.
+#[test]
+fn damping_ratios_are_of_independent_joints() {
+    let body = |name: &str, at: &str, reference: &str, inside: &str| {
+        format!(
+            "<body name='{name}' pos='{at} 0 0'><joint name='j{name}' axis='0 1 0' ref='{reference}'/><geom \
+             type='box' size='0.05 0.02 0.01' pos='0.1 0 0.05' mass='1'/>{inside}</body>"
+        )
+    };
+    let tree = body("a", "0", "0.3", &body("b", "0.2", "-0.4", &body("c", "0.2", "0.7", "")));
+    let text = format!(
+        "<mujoco><compiler angle='radian'/><worldbody>{tree}</worldbody><equality><joint joint1='jb' joint2='ja' \
+         polycoef='0.2 1 0 0 0'/></equality><tendon><fixed name='t'><joint joint='jb' coef='2'/><joint joint='jc' \
+         coef='-3'/></fixed></tendon><actuator><position joint='ja' kp='100' dampratio='1'/><position joint='jb' \
+         gear='2' kp='100' dampratio='0.5'/><position tendon='t' kp='50' dampratio='0.7'/></actuator></mujoco>"
+    );
+    let found = actuation(&text);
+    for (one, damping) in
+        found.actuators.iter().flatten().zip([3.1531743569589543, 0.31475577606520955, 0.10873993649208184])
+    {
+        assert!((one.bias[2] + damping).abs() < 1e-12 * damping, "{}: {} {damping}", one.name, one.bias[2]);
+    }
+}
+
 #[test]
 fn groups_that_are_disabled_do_not_act() {
     let text = "<mujoco><option actuatorgroupdisable='3'/><worldbody><body><joint name='h' actuatorfrcrange='-.3 .2'/>\

@@ -69,6 +69,35 @@ fn an_equality_with_what_is_not_attached_is_left_out() {
 }
 
 #[test]
+fn a_model_without_name_has_the_name_in_its_file() {
+    let part = |model: &str, joint: &str| {
+        let body = format!("<body name='b'><joint name='{joint}'/><geom size='0.1'/></body>");
+        format!("<mujoco{model}><worldbody>{body}</worldbody></mujoco>")
+    };
+    let main = |name: &str| {
+        let models = "<model file='parts/x.xml'/><model file='parts/y.xml'/><model name='z' file='parts/z.xml'/>";
+        let attach = format!("<attach model='{name}' body='b' prefix='p_'/>");
+        format!("<mujoco><asset>{models}</asset><worldbody>{attach}</worldbody></mujoco>")
+    };
+    let open = |name: &str| {
+        let parts = [part(" model='y'", "in_x"), part("", "in_y"), part(" model='w'", "in_z")];
+        let [x, y, z] = parts.each_ref().map(String::as_str);
+        let files = [("main.xml", &*main(name)), ("parts/x.xml", x), ("parts/y.xml", y), ("parts/z.xml", z)];
+        load(&folder("attach_names", &files)[0]).map(|robot| robot.description.joints[0].name.clone())
+    };
+    for (name, joint) in [("y", "p_in_x"), ("MuJoCo Model", "p_in_y"), ("z", "p_in_z")] {
+        assert_eq!(open(name).expect(name), joint, "{name}");
+    }
+    for name in ["x", "w"] {
+        let why = open(name).expect_err(name);
+        assert!(why.to_string().contains(&format!("there is no model `{name}` in <asset>")), "{why}");
+    }
+    let why = open("parts").expect_err("unknown");
+    let help = why.diagnostics()[0].help();
+    assert!(help.is_some_and(|help| help.ends_with("the models are `MuJoCo Model`, `y`, `z`")), "{help:?}");
+}
+
+#[test]
 fn a_frame_is_attached_with_its_pose_and_its_contents() {
     let framed = ARM
         .replace("<body name='b'>", "<frame name='f' pos='0 0 3'><body name='b'>")

@@ -234,3 +234,16 @@ fn a_screw_moves_alike_in_every_format() {
         assert!((M - N).abs() < 1e-14 && (g - h).abs() < 1e-13, "{M} {N} {g} {h}");
     }
 }
+
+#[test]
+fn what_acts_on_a_free_joint_is_named_if_it_cannot_be_written() {
+    let body = |joint: &str| format!("<body>{joint}<geom size='0.1'/></body>");
+    let bodies = body("<joint name='f' type='free' damping='1' armature='0.5'/>") + &body("<freejoint name='g'/>");
+    let text = format!("<mujoco><worldbody>{bodies}</worldbody></mujoco>");
+    let robot = parse("free.xml", &text).unwrap().description;
+    let found = [sdf::write(&robot).unwrap_err().to_string(), mozzi_urdf::write(&robot).unwrap_err().to_string()];
+    for (why, language) in found.iter().zip(["SDFormat", "URDF"]) {
+        let expected = "joint `f`: damping 1, armature 0.5 of a free joint";
+        assert_eq!(*why, format!("{language} cannot express {expected}"));
+    }
+}

@@ -7,7 +7,7 @@ use crate::text::{Page, about, column, rows_of, table};
 use crate::{angles, failure, json};
 use clap::Args;
 use mozzi::quantities::Query;
-use mozzi::{ConstraintRank, Model};
+use mozzi::{ConstraintRank, Error, Model};
 use serde_json::{Value, json};
 
 /// Violations up to this size, rad and m, are rounding.
@@ -84,13 +84,13 @@ pub fn check_constraints<'q>(queries: impl IntoIterator<Item = Query<'q>>, model
 }
 
 /// The largest violation of the constraints, rad and m; infinite where one is undefined.
-pub fn violation(model: &Model, theta: &[f64]) -> Result<f64> {
+pub fn violation(model: &Model, theta: &[f64]) -> Result<f64, Error> {
     let phi = model.constraint_errors(theta)?;
     Ok(phi.iter().fold(0.0, |most, x| if x.is_nan() { f64::INFINITY } else { x.abs().max(most) }))
 }
 
 /// (θ, θ̇) unchanged if they satisfy the constraints, else the nearest that do, with a note.
-pub fn assembled(model: &Model, theta: Vec<f64>, dtheta: Vec<f64>) -> Result<(Vec<f64>, Vec<f64>)> {
+pub fn assembled(model: &Model, theta: Vec<f64>, dtheta: Vec<f64>) -> Result<(Vec<f64>, Vec<f64>), Error> {
     if model.constraint_rows() == 0 {
         return Ok((theta, dtheta));
     }
@@ -114,6 +114,22 @@ pub fn assembled(model: &Model, theta: Vec<f64>, dtheta: Vec<f64>) -> Result<(Ve
         failure::note(&format!("the start's velocities were changed by up to {} to satisfy them", about(changed)));
     }
     Ok((closed, rates))
+}
+
+/// An error of [`assembled`]; if joint limits are in the way, with the options that avoid them: other named states than
+/// the given one, and no limits if they are respected.
+pub fn with_other_starts(why: Error, model: &Model, given: Option<&str>, respects: bool) -> Failure {
+    const SHOWN: usize = 3;
+    if !matches!(why, Error::BadArgument { what: "the closed position", .. }) {
+        return why.into();
+    }
+    let start = model.description().start.as_deref();
+    let others = model.state_names().filter(|name| given != Some(*name) && start != Some(*name)).take(SHOWN);
+    let others = others.map(|name| format!("`--state {name}`")).collect::<Vec<_>>().join(" or ");
+    let elsewhere = (!others.is_empty()).then(|| format!("{others} starts there"));
+    let beyond = respects.then(|| "`--joint-limits ignore` starts beyond limits".to_string());
+    let ways: Vec<String> = [Some(why.to_string()), elsewhere, beyond].into_iter().flatten().collect();
+    Failure::wrong(ways.join("; "))
 }
 
 /// "5 rows of rank 2 leave 1 degree of freedom; redundant: …".

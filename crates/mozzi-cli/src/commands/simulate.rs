@@ -1,6 +1,6 @@
 //! `mozzi simulate`: forward dynamics, integrated.
 
-use super::assemble::assembled;
+use super::assemble::{assembled, with_other_starts};
 use super::outcome::Outcome;
 use super::simulate_page::{object, page, told};
 use crate::conditions::{EventArguments, happened};
@@ -220,7 +220,8 @@ impl SimulateArguments {
         if is_held {
             on_ground(&mut theta)?;
         }
-        (theta, dtheta) = assembled(model, theta, dtheta)?;
+        (theta, dtheta) = assembled(model, theta, dtheta)
+            .map_err(|why| with_other_starts(why, model, self.start.name(model), limits == Limit::Respect))?;
         if !is_held {
             on_ground(&mut theta)?;
         }

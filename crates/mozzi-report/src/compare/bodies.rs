@@ -4,7 +4,7 @@ use crate::compare::Result;
 use crate::compare::answer::{Answer, Robot, Workaround};
 use crate::compare::cause::Cause;
 use crate::compare::constants::{Constants, freed, home, same_body};
-use mozzi::{Description, SpatialInertia, Sym3};
+use mozzi::{Description, SE3, SpatialInertia, Sym3};
 
 /// The reason why a body differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,8 @@ pub enum Reason {
     Bounded,
     /// MuJoCo computed its inertia from its shapes.
     Shapes,
+    /// Both computed it from its shapes.
+    BothShapes,
     /// MuJoCo scaled all masses (settotalmass).
     Scaled,
     Unknown,
@@ -31,6 +33,21 @@ pub struct BodyChange {
     pub links: Vec<String>,
     pub mozzi: SpatialInertia,
     pub theirs: SpatialInertia,
+}
+
+impl BodyChange {
+    /// The largest difference of the moments about the centre of mass, relative to the largest moment.
+    pub fn moments_apart(&self) -> f64 {
+        let moments = |inertia: &SpatialInertia| {
+            let center = SE3 { p: -inertia.center_of_mass(), ..SE3::identity() };
+            let rows = inertia.transformed(center).to_matrix();
+            [0, 1, 2].map(|i| [rows[i][0], rows[i][1], rows[i][2]])
+        };
+        let (a, b) = (moments(&self.mozzi), moments(&self.theirs));
+        let most = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0_f64, |most, x| most.max(x.abs()));
+        let far = most(&mut a.as_flattened().iter().zip(b.as_flattened()).map(|(x, y)| x - y));
+        far / most(&mut b.as_flattened().iter().copied())
+    }
 }
 
 /// One cause for each reason.
@@ -87,7 +104,9 @@ fn reason(robot: &Description, change: &BodyChange, answer: &Answer, from: &Robo
     }
     let has_shapes = change.links.iter().any(|link| from.from_geometry.contains(link));
     if has_shapes || from.settings["inertiafromgeom"] == "true" {
-        return Ok(Reason::Shapes);
+        // a link without <inertial> has no mass here, unless its shapes give it
+        let same_mass = change.mozzi.mass > 0.0 && raised.abs() <= 1e-6 * change.mozzi.mass;
+        return Ok(if same_mass { Reason::BothShapes } else { Reason::Shapes });
     }
     Ok(if setting("settotalmass") > 0.0 { Reason::Scaled } else { Reason::Unknown })
 }

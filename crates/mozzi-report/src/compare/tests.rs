@@ -80,6 +80,7 @@ fn kinds(verdict: &Verdict) -> Vec<&'static str> {
         Cause::Bodies(Reason::Bounded, _) => "bounded",
         Cause::Bodies(Reason::Dropped, _) => "dropped",
         Cause::Bodies(Reason::Shapes, _) => "shapes",
+        Cause::Bodies(Reason::BothShapes, _) => "both shapes",
         Cause::Bodies(Reason::Scaled, _) => "scaled",
         Cause::Bodies(Reason::Unknown, _) => "unknown",
         Cause::Axes(_) => "axes",
@@ -125,6 +126,26 @@ fn every_record_is_explained_by_its_causes() {
     assert!(kinds(&verdict).contains(&"spring") && verdict.is_explained(), "{verdict:?}");
     let (verdict, _) = judged(0, |_| {});
     assert!(verdict.order.is_some(), "Pinocchio sorts siblings by name");
+}
+
+#[test]
+fn inertias_of_shapes_that_differ_slightly_are_named_with_their_difference() {
+    let (mut robot, answer) = (robot("balls.xml"), answer("balls_mujoco.json"));
+    let mut from = answer.robot.clone().unwrap();
+    from.from_geometry = robot.links.iter().map(|link| link.name.clone()).collect();
+    for link in &mut robot.links {
+        let moments = (0..10).map(|k| if k < 4 { 1.0 } else { 1.0 + 3e-8 });
+        let scaled: Vec<f64> = link.inertia.to_parameters().into_iter().zip(moments).map(|(x, y)| x * y).collect();
+        link.inertia = mozzi::SpatialInertia::from_parameters(scaled.try_into().unwrap());
+    }
+    let causes = crate::compare::bodies::suspects(&robot, &answer, &from).unwrap();
+    let [cause @ Cause::Bodies(Reason::BothShapes, _)] = causes.as_slice() else { panic!("{causes:?}") };
+    let words = crate::compare::vocabulary::cause(cause, &answer);
+    let expected = "both compute inertias from the shapes (inertiafromgeom), with a difference of ";
+    let (start, rest) = words.split_once(expected).expect(&words);
+    let (size, rest) = rest.split_once(" of the moments of `").expect(&words);
+    let size: f64 = size.parse().expect(&words);
+    assert!(start == "inertia, here and in MuJoCo: " && (3e-8..3e-6).contains(&size) && rest.contains('`'), "{words}");
 }
 
 #[test]

@@ -83,6 +83,10 @@ fn force(name: &str, library: &str) -> String {
 }
 
 fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
+    let mut list: Vec<&BodyChange> = list.iter().collect();
+    if reason == Reason::BothShapes {
+        list.sort_by(|x, y| y.moments_apart().total_cmp(&x.moments_apart()));
+    }
     let why = match reason {
         Reason::Balanced => {
             "inertias that break the triangle inequality are those of spheres in MuJoCo (balanceinertia); as given here"
@@ -90,13 +94,17 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
         Reason::Dropped => "MuJoCo drops the moments of massless links that are fixed to others; included here",
         Reason::Bounded => "bodies without mass or inertia get some in MuJoCo (boundmass, boundinertia); as given here",
         Reason::Shapes => "MuJoCo computes inertias from the shapes (inertiafromgeom); no <inertial>, no mass here",
+        Reason::BothShapes => "both compute inertias from the shapes (inertiafromgeom), with a difference of",
         Reason::Scaled => "MuJoCo scales all masses to a sum (settotalmass); as given here",
         Reason::Unknown => "bodies differ for an unknown reason",
     };
-    let here = |change: &BodyChange| {
+    let here = |change: &&BodyChange| {
         let (a, b) = (&change.mozzi, &change.theirs);
         let by = change.joint.as_str();
         let name = change.links.first().map_or(by, String::as_str);
+        if reason == Reason::BothShapes {
+            return format!("{:.1e} of the moments of `{name}`", change.moments_apart());
+        }
         let moments = |inertia: &mozzi::SpatialInertia| inertia.verdict().principal_moments.map(about).join(", ");
         let centers = [a.center_of_mass().0, b.center_of_mass().0];
         let far = (0..3).any(|k| (centers[0][k] - centers[1][k]).abs() > 1e-9);
@@ -117,7 +125,8 @@ fn bodies(reason: Reason, list: &[BodyChange], library: &str) -> String {
         };
         format!("`{name}`{more} {}", words.join(", "))
     };
-    format!("inertia, here and in {library}: {why}: {}", some(list, here))
+    let colon = if reason == Reason::BothShapes { "" } else { ":" };
+    format!("inertia, here and in {library}: {why}{colon} {}", some(&list, here))
 }
 
 /// Names for balls and free joints.

@@ -2,9 +2,7 @@
 
 use super::actuator::{Actuation, Actuator};
 use mozzi::dynamics::gravity_forces;
-use mozzi::nalgebra::{Cholesky, DVector, Dyn};
-use mozzi::{Error, Model, Scalar, SpatialInertia, Workspace};
-use std::cell::OnceCell;
+use mozzi::{Error, Model, SpatialInertia, Workspace};
 use std::ops::Range;
 
 /// The actuators of a file with constant controls, and its gravity compensation, as MuJoCo computes them. The forces of
@@ -38,10 +36,8 @@ impl Actuated {
     pub fn new(model: &Model, actuation: &Actuation, controls: &[f64]) -> Result<Self, Error> {
         let controls = controls.iter().copied().chain(std::iter::repeat(0.0));
         let given = actuation.actuators.iter().zip(controls);
-        let inertia = Inertia::default();
         let drives = given.filter_map(|(one, control)| Some((one.as_ref()?, control)));
-        let drives =
-            drives.map(|(one, control)| Drive::new(model, one, control, &inertia)).collect::<Result<_, _>>()?;
+        let drives = drives.map(|(one, control)| Drive::new(model, one, control)).collect::<Result<_, _>>()?;
         let mut limits = vec![f64::INFINITY; model.n()];
         for (place, joint) in model.places().iter().zip(model.joints()) {
             limits[place.velocities()].fill(joint.limits.effort.unwrap_or(f64::INFINITY));
@@ -100,23 +96,8 @@ fn compensated(model: &Model, parts: &[(String, f64)]) -> Result<Model, Error> {
     robot.build()?.with_gravity(model.gravity().0)
 }
 
-/// The factors of M at the robot's start, computed when the first actuator needs them.
-#[derive(Default)]
-struct Inertia(OnceCell<Option<Cholesky<f64, Dyn>>>);
-
-impl Inertia {
-    /// 1 / (J M⁻¹Jᵀ), the inertia that an actuator with these J moves, kg m² or kg.
-    fn of(&self, model: &Model, terms: &[(usize, usize, f64)]) -> f64 {
-        let M = self.0.get_or_init(|| model.mass_matrix(&model.start().theta).ok().and_then(Cholesky::new));
-        let mut J = DVector::zeros(model.n());
-        terms.iter().for_each(|(_, v, gear)| J[*v] += gear);
-        let mobility = M.as_ref().map_or(0.0, |M| J.dot(&M.solve(&J)));
-        if mobility > 0.0 { 1.0 / mobility } else { 0.0 }
-    }
-}
-
 impl Drive {
-    fn new(model: &Model, one: &Actuator, control: f64, inertia: &Inertia) -> Result<Self, Error> {
+    fn new(model: &Model, one: &Actuator, control: f64) -> Result<Self, Error> {
         let (mut terms, mut offset) = (Vec::new(), 0.0);
         for (name, gear) in &one.gears {
             let mimic = model.description().joints.iter().find(|joint| joint.name == *name);
@@ -128,14 +109,9 @@ impl Drive {
             let first = |range: Range<usize>| range.start;
             terms.push((first(place.positions()), first(place.velocities()), gear * ratio));
         }
-        let mut bias = one.bias;
-        if bias[2] > 0.0 && one.gain[0] == -bias[1] {
-            // of a mass-spring-damper with this ratio
-            bias[2] *= -2.0 * Scalar::sqrt(one.gain[0] * inertia.of(model, &terms));
-        }
         let [low, high] = one.control_range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
         let range = one.force_range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        Ok(Drive { terms, offset, gain: one.gain, bias, control: control.max(low).min(high), range })
+        Ok(Drive { terms, offset, gain: one.gain, bias: one.bias, control: control.max(low).min(high), range })
     }
 
     /// ∂F/∂(1, l, l̇) with the control.

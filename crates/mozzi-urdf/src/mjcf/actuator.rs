@@ -27,7 +27,7 @@ pub struct Actuator {
     pub gears: Vec<(String, f64)>,
     /// (g₀, g₁, g₂).
     pub gain: [f64; 3],
-    /// (b₀, b₁, b₂). As in MuJoCo a positive b₂ is the damping ratio of a position actuator.
+    /// (b₀, b₁, b₂).
     pub bias: [f64; 3],
     /// Bounds of the control u.
     pub control_range: Option<[f64; 2]>,

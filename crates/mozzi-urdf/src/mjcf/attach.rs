@@ -6,6 +6,7 @@ use super::include::{self, Include, MOST_FILES};
 use super::part::{Part, Wanted};
 use super::vocabulary;
 use crate::report::finding::{Finding, Findings};
+use crate::report::spelling::did_you_mean;
 use crate::text::bytes::{self, MOST_BYTES};
 use crate::text::context::Context;
 use crate::text::dialect::Dialect;
@@ -45,7 +46,7 @@ pub(crate) fn expand(sources: &mut Vec<Source>, files: Files, cx: &mut Context) 
     if !sources.iter().any(|source| source.text.contains("<attach")) {
         return Some(attached);
     }
-    let (mut models, mut places) = (BTreeMap::new(), Vec::new());
+    let (mut models, mut places) = (Vec::new(), Vec::new());
     for source in &*sources {
         match syntax::parse(source, Dialect::Mjcf) {
             Ok(document) => document.descendants().for_each(|node| note(node, source, (&mut models, &mut places), cx)),
@@ -56,28 +57,22 @@ pub(crate) fn expand(sources: &mut Vec<Source>, files: Files, cx: &mut Context) 
         }
     }
     let mut read: BTreeMap<String, usize> = BTreeMap::new();
-    for attach in places {
-        let Some(model) = models.get(&attach.model) else {
-            let message = format!("attach: model: there is no model `{}` in <asset>", shown(&attach.model));
-            let help = crate::report::spelling::did_you_mean(&attach.model, models.keys().map(String::as_str));
-            cx.findings.add(Finding::error("unknown_word", attach.span, message).maybe_help(help));
-            continue;
-        };
-        let whole = match read.get(&attach.model) {
-            Some(&whole) => whole,
-            None => {
-                match open(model, files, after(sources), cx) {
-                    Ok(source) => sources.push(source),
-                    Err(finding) => {
-                        cx.findings.add(finding);
-                        continue;
-                    }
-                }
-                read.insert(attach.model.clone(), sources.len() - 1);
-                sources.len() - 1
+    for (name, model) in models {
+        let opened = open(&model, files, sources, cx).and_then(|source| Ok((name_of(name, &source)?, source)));
+        match opened {
+            Ok((name, source)) => {
+                read.entry(name).or_insert(sources.len()); // the first of several, as in MuJoCo
+                sources.push(source);
             }
+            Err(finding) => cx.findings.add(finding),
+        }
+    }
+    for attach in places {
+        let added = match read.get(&attach.model) {
+            Some(&whole) => add(&attach, whole, sources, files, &mut attached),
+            None => Err(unknown(&attach, &read)),
         };
-        if let Err(finding) = add(&attach, whole, sources, files, &mut attached) {
+        if let Err(finding) = added {
             cx.findings.add(finding);
         }
     }
@@ -93,15 +88,14 @@ fn after(sources: &[Source]) -> usize {
 fn note(
     node: Node,
     source: &Source,
-    (models, places): (&mut BTreeMap<String, Include>, &mut Vec<Attach>),
+    (models, places): (&mut Vec<(Option<String>, Include)>, &mut Vec<Attach>),
     cx: &mut Context,
 ) {
     let is_in = |name| node.parent_element().is_some_and(|parent| parent.has_tag_name(name));
     let text = |name: &str| node.attribute(name).unwrap_or_default().to_string();
     if node.has_tag_name("model") && is_in("asset") {
-        let stem = || Path::new(&text("file")).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let name = node.attribute("name").map(str::to_string).or_else(stem).unwrap_or_default();
-        models.insert(name, Include::of(node, source, "model"));
+        let name = node.attribute("name").map(str::to_string);
+        models.push((name, Include::of(node, source, "model")));
     } else if node.has_tag_name("attach") {
         let start = node.range().start;
         for attribute in node.attributes().filter(|one| !vocabulary::ATTACH.attributes.contains(&one.name())) {
@@ -127,10 +121,30 @@ fn note(
     }
 }
 
+/// A model's own name, or the one in its file.
+fn name_of(given: Option<String>, source: &Source) -> Result<String, Finding> {
+    match given {
+        Some(name) => Ok(name),
+        None => {
+            let document = syntax::parse(source, Dialect::Mjcf)?;
+            Ok(document.root_element().attribute("model").unwrap_or("MuJoCo Model").to_string())
+        }
+    }
+}
+
+fn unknown(attach: &Attach, read: &BTreeMap<String, usize>) -> Finding {
+    let message = format!("attach: model: there is no model `{}` in <asset>", shown(&attach.model));
+    let known: Vec<&str> = read.keys().map(String::as_str).collect();
+    let names = || format!("a <model> without `name` has the name in its file; the models are {}", list(&known));
+    let help = did_you_mean(&attach.model, known.iter().copied()).or_else(|| Some(names()));
+    Finding::error("unknown_word", attach.span.clone(), message).maybe_help(help)
+}
+
 /// The text of a model.
-fn open(model: &Include, files: Files, base: usize, cx: &mut Context) -> Result<Source, Finding> {
+fn open(model: &Include, files: Files, sources: &[Source], cx: &mut Context) -> Result<Source, Finding> {
     let (name, content) = include::open(model, files, None, &mut BTreeSet::new())?;
-    let mut findings = Findings::default();
+    has_room(sources, content.len(), "model", &model.span)?;
+    let (base, mut findings) = (after(sources), Findings::default());
     let text = Source::new(&name, bytes::read(&content, &mut findings)).at(base);
     let text = if Dialect::of(&text.text) == Dialect::Mjcf { text } else { text.hidden() };
     let text = syntax::mended(text, Dialect::Mjcf, &mut cx.findings);
@@ -138,6 +152,17 @@ fn open(model: &Include, files: Files, base: usize, cx: &mut Context) -> Result<
         Some(finding) => Err(finding),
         None => Ok(text),
     }
+}
+
+/// An error if a text of this length is too much beside the others.
+fn has_room(sources: &[Source], length: usize, what: &str, span: &Range<usize>) -> Result<(), Finding> {
+    let total: usize = sources.iter().map(|source| source.text.len()).sum();
+    if sources.len() < MOST_FILES && total + length <= MOST_BYTES {
+        return Ok(());
+    }
+    let message =
+        format!("{what}: more than {MOST_FILES} files or {MOST_BYTES} bytes in total, expected at most these");
+    Err(Finding::error("too_large", span.clone(), message))
 }
 
 /// Adds what replaces the `<attach>`, and the sections that belong to it.
@@ -174,12 +199,7 @@ fn add(
     let part =
         Part::of(&document, &source.text, &wanted).map_err(|why| fails("unknown_word", format!("attach: {why}")))?;
     for (text, is_section) in [(part.bodies, false), (part.sections, true)] {
-        let total: usize = sources.iter().map(|source| source.text.len()).sum();
-        if sources.len() >= MOST_FILES || total + text.len() > MOST_BYTES {
-            let message =
-                format!("attach: more than {MOST_FILES} files or {MOST_BYTES} bytes in total, expected at most these");
-            return Err(fails("too_large", message));
-        }
+        has_room(sources, text.len(), "attach", &attach.span)?;
         let k = sources.len();
         let mut text = Source::new(&source.name, &text).at(after(sources)).attached();
         text.is_shown = source.is_shown;

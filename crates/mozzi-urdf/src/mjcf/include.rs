@@ -22,7 +22,7 @@ pub(crate) const MOST_FILES: usize = 256;
 pub(crate) struct Include {
     what: &'static str,
     place: usize,
-    span: Range<usize>,
+    pub span: Range<usize>,
     file: Option<String>,
 }
 

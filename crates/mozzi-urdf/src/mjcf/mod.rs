@@ -274,6 +274,9 @@ fn read_model<'a>(
     let tree = std::mem::replace(&mut model.tree, Tree::new(root));
     let (mut description, mut places) = tree.describe(name, model.options.gravity, cx);
     spring::tune(&mut description, &tunings, cx);
+    if let Some(actuation) = &mut model.actuation {
+        spring::damp(&mut actuation.actuators, &description, &tunings);
+    }
     let keys = keyframe::add(keys, &slots, &mut description, &mut places, cx);
     let actuation = model.settled(&description.links, &keys);
     Some(Read { description, places, shapes: model.shapes, actuation })

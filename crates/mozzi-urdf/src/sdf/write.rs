@@ -4,7 +4,7 @@ use super::FIXED_BASE;
 use super::base::{base_link, has_world, start_pose};
 use super::names::Names;
 use crate::urdf::write::{ball_constraint, triple};
-use crate::written::{NotWritten, Written};
+use crate::written::{NotWritten, Written, of_free_joint};
 use mozzi::model::description::{Joint, JointKind, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, Vec3};
 use std::collections::BTreeMap;
@@ -44,9 +44,7 @@ fn reasons(d: &Description) -> Vec<String> {
         if !is_plain {
             reasons.push(format!("joint `{}`: a free joint that does not begin at the world's origin", joint.name));
         }
-        if joint.damping != 0.0 || joint.friction != 0.0 || joint.armature != 0.0 {
-            reasons.push(format!("joint `{}`: friction or armature of a free joint", joint.name));
-        }
+        reasons.extend(of_free_joint(joint));
     }
     reasons
 }

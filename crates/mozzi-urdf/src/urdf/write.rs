@@ -3,6 +3,7 @@
 use crate::text::xacro::has_expression;
 use crate::urdf::floating::frees_the_base;
 use crate::urdf::limit::UNLIMITED;
+use crate::written::of_free_joint;
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Joint, JointKind, Limits, Link};
 use mozzi::{Base, Description, SE3, ScrewAxis, SpatialInertia, Vec3};
 use std::fmt::{self, Write};
@@ -62,12 +63,7 @@ fn not_urdf(d: &Description) -> Vec<String> {
                     "joint `{name}`: a free joint on an empty base, which would be read as a floating base"
                 ));
             }
-            JointKind::Free if joint.damping != 0.0 || joint.friction != 0.0 || joint.armature != 0.0 => {
-                reasons.push(format!(
-                    "joint `{name}`: damping {}, friction {} and armature {} of a free joint",
-                    joint.damping, joint.friction, joint.armature
-                ));
-            }
+            JointKind::Free => reasons.extend(of_free_joint(joint)),
             _ => {}
         }
     }

@@ -112,8 +112,8 @@ fn page(entries: &[Entry], written: &BTreeMap<&str, f64>) -> String {
          Poses of all bodies, Jacobians, M, h, τ, θ̈ and the kinetic energy, without springs, damping and friction, which are \
          switched off in MuJoCo. The error is normalised: the difference over ε = 2.2 × 10⁻¹⁶ times the size of the terms. \
          *Left out* are forces of MuJoCo that mozzi does not compute, each told in a warning.\n\n\
-         Errors above 10⁶ come from MuJoCo's principal axes of inertia: it stops the search for them at rotations below \
-         1.4 × 10⁻⁶ rad. The inertias of such bodies differ by up to 8 × 10⁻⁷ of themselves, their masses by rounding.\n\n\
+         The inertia of a mesh is that of MuJoCo 4, which drops its products of inertia about the principal axes where they \
+         are at most 10⁻⁷ of the largest moment.\n\n\
          | model | n | worst error | left out |\n|---|---|---|---|\n",
         entries.len(),
         compared.len(),
