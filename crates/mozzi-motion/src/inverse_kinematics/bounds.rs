@@ -16,6 +16,10 @@ pub(crate) trait Within {
     /// Moves the guess in θ to anywhere within the bounds; for a joint without, half a turn or a metre around the
     /// guess. A floating base and free joints stay.
     fn randomize(&self, theta: &mut [f64], random: &mut Random);
+
+    /// The bounds of joint k, finite, and an angle's cut to a turn. A side without bound is half a turn or a metre
+    /// from `around`.
+    fn range(&self, k: usize, around: f64) -> [f64; 2];
 }
 
 impl Within for Bounds {
@@ -40,7 +44,7 @@ impl Within for Bounds {
     }
 
     fn randomize(&self, theta: &mut [f64], random: &mut Random) {
-        for ((place, &[low, high]), turns) in self.places.iter().zip(&self.joints).zip(&self.turns) {
+        for (k, (place, &[_, high])) in self.places.iter().zip(&self.joints).enumerate() {
             let q = match place.freedom {
                 Freedom::One => &mut theta[place.q],
                 Freedom::Ball => {
@@ -51,11 +55,16 @@ impl Within for Bounds {
                 }
                 Freedom::Free => continue,
             };
-            let reach = if *turns { PI } else { 1.0 };
-            let low = if low.is_finite() { low } else { high.min(*q + reach) - 2.0 * reach };
-            let high = if high.is_finite() { high } else { low + 2.0 * reach };
+            let [low, high] = self.range(k, *q);
             *q = 0.5 * (low + high) + 0.5 * (high - low) * random.next();
         }
+    }
+
+    fn range(&self, k: usize, around: f64) -> [f64; 2] {
+        let ([low, high], turns) = (self.joints[k], self.turns[k]);
+        let reach = if turns { PI } else { 1.0 };
+        let low = if low.is_finite() { low } else { high.min(around + reach) - 2.0 * reach };
+        [low, if turns || high.is_infinite() { high.min(low + 2.0 * reach) } else { high }]
     }
 }
 
