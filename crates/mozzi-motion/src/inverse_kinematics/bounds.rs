@@ -13,12 +13,11 @@ pub(crate) trait Within {
     /// Puts each joint that is beyond a bound onto it.
     fn clamp(&self, theta: &mut [f64]);
 
-    /// Moves the guess in θ to anywhere within the bounds; for a joint without, half a turn or a metre around the
-    /// guess. A floating base and free joints stay.
+    /// Moves the guess in θ to anywhere within the joints' [ranges](Self::range) around it. A floating base and free
+    /// joints stay.
     fn randomize(&self, theta: &mut [f64], random: &mut Random);
 
-    /// The bounds of joint k, finite, and an angle's cut to a turn. A side without bound is half a turn or a metre
-    /// from `around`.
+    /// The bounds of joint k; of an angle, and of a slide without a bound, a turn or two metres of them around a value.
     fn range(&self, k: usize, around: f64) -> [f64; 2];
 }
 
@@ -62,9 +61,12 @@ impl Within for Bounds {
 
     fn range(&self, k: usize, around: f64) -> [f64; 2] {
         let ([low, high], turns) = (self.joints[k], self.turns[k]);
+        if !turns && (high - low).is_finite() {
+            return [low, high];
+        }
         let reach = if turns { PI } else { 1.0 };
-        let low = if low.is_finite() { low } else { high.min(around + reach) - 2.0 * reach };
-        [low, if turns || high.is_infinite() { high.min(low + 2.0 * reach) } else { high }]
+        let low = low.max(high.min(around + reach) - 2.0 * reach);
+        [low, high.min(low + 2.0 * reach)]
     }
 }
 
