@@ -25,8 +25,10 @@ impl Bounds {
         let free = [f64::NEG_INFINITY, f64::INFINITY];
         let mut joints = vec![free; model.joint_names().len()];
         for (joint, Source { joint: j, ratio, offset }) in model.moving_joints().zip(model.sources()) {
-            let (Some(limits), true) = (joint.limits.position, ratio != 0.0) else { continue };
-            let [a, b] = limits.map(|x| (x - offset) / ratio);
+            if ratio == 0.0 {
+                continue;
+            }
+            let [a, b] = joint.limits.bounds().map(|x| (x - offset) / ratio);
             let [low, high] = joints[j];
             let both = [low.max(a.min(b)), high.min(a.max(b))];
             // if the source joint's limits keep a mimic joint outside its own, the mimic joint's limits are ignored
