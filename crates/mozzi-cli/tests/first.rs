@@ -1,6 +1,6 @@
 //! What people type first: each guess works, or says in one line what does; and what is printed fits a screen.
 
-use crate::common::{complaint, file, folder, json, mozzi, numbers, screen, text, words};
+use crate::common::{assert_close, complaint, file, folder, json, mozzi, numbers, screen, text, words};
 
 const Q: &str = "--q=0,-1.2,1.5,0.3,1.1,0";
 
@@ -334,6 +334,16 @@ fn a_robot_stands_by_a_name() {
     assert!(fall.abs() < 1e-3, "{fall}");
     let page = screen(&words, 100);
     assert!(page.contains("roll") && page.contains("com x"), "{page}");
+    // a model of its own, in which the frames have other numbers
+    let folder = folder("first_standing");
+    let robot = mozzi_urdf::embedded::text("anymal").expect("embedded");
+    let more = "<link name=\"more\"/><joint name=\"of_more\" type=\"fixed\"><parent link=\"base\"/>\
+                <child link=\"more\"/></joint><link ";
+    let robot = file(&folder, "more.urdf", &robot.replacen("<link ", more, 1)).replace('\\', "/");
+    let controller = file(&folder, "own.json", &format!(r#"{{"controller": "standing", "model": "{robot}"}}"#));
+    let own = json(&words.map(|word| if word == "standing" { controller.as_str() } else { word }));
+    let last = |motion: &serde_json::Value| numbers(motion["theta"].as_array().expect("rows").last().expect("a row"));
+    assert_close(&last(&own), &last(&motion), 1e-6);
 }
 
 #[test]
