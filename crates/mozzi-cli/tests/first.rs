@@ -334,16 +334,13 @@ fn a_robot_stands_by_a_name() {
     assert!(fall.abs() < 1e-3, "{fall}");
     let page = screen(&words, 100);
     assert!(page.contains("roll") && page.contains("com x"), "{page}");
-    // a model of its own, in which the frames have other numbers
-    let folder = folder("first_standing");
-    let robot = mozzi_urdf::embedded::text("anymal").expect("embedded");
-    let more = "<link name=\"more\"/><joint name=\"of_more\" type=\"fixed\"><parent link=\"base\"/>\
-                <child link=\"more\"/></joint><link ";
-    let robot = file(&folder, "more.urdf", &robot.replacen("<link ", more, 1)).replace('\\', "/");
+    let (folder, robot) = (folder("first_standing"), mozzi_urdf::embedded::text("anymal").expect("embedded"));
+    let fixed = r#"<joint name="of_more" type="fixed"><parent link="base"/><child link="more"/></joint>"#;
+    let robot = robot.replacen("<link ", &format!("<link name=\"more\"/>{fixed}<link "), 1);
+    let robot = file(&folder, "more.urdf", &robot).replace('\\', "/");
     let controller = file(&folder, "own.json", &format!(r#"{{"controller": "standing", "model": "{robot}"}}"#));
     let own = json(&words.map(|word| if word == "standing" { controller.as_str() } else { word }));
-    let last = |motion: &serde_json::Value| numbers(motion["theta"].as_array().expect("rows").last().expect("a row"));
-    assert_close(&last(&own), &last(&motion), 1e-6);
+    assert_close(&numbers(&own["theta"][rows.len() - 1]), &numbers(&rows[rows.len() - 1]), 1e-6);
 }
 
 #[test]

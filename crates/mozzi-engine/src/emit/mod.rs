@@ -80,7 +80,8 @@ impl SourceFile {
     pub fn write(&self, folder: &Path) -> Result<PathBuf, EmitError> {
         let path = folder.join(&self.name);
         if std::fs::read(&path).ok().as_deref() != Some(self.text.as_bytes()) {
-            // a name of each writer's own, for threads: written next to its destination and renamed: a full disk leaves an older file intact
+            // written next to its destination and renamed: a full disk leaves an older file intact
+            // threads write at the same time
             static COUNT: AtomicUsize = AtomicUsize::new(0);
             let count = COUNT.fetch_add(1, Ordering::Relaxed);
             let part = folder.join(format!(".mozzi-{}-{count}.part", std::process::id()));

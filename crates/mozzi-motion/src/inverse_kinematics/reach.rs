@@ -67,12 +67,7 @@ impl InverseKinematics<'_> {
     }
 
     /// θ with the joint's position that is farthest, by a grid that becomes finer.
-    fn farthest(
-        &self,
-        theta: &[f64],
-        k: usize,
-        distance: &dyn Fn(&[f64]) -> Option<f64>,
-    ) -> Option<Vec<f64>> {
+    fn farthest(&self, theta: &[f64], k: usize, distance: &dyn Fn(&[f64]) -> Option<f64>) -> Option<Vec<f64>> {
         let place = self.bounds.places[k].positions();
         if place.len() != 1 {
             return Some(theta.to_vec()); // a ball at the tip does not change the reach

@@ -61,7 +61,8 @@ fn a_ball_is_held_at_the_point_that_touches() {
     let torques = |radius: f64| {
         let mut points = contacts.points.clone();
         for point in &mut points {
-            let up = model.forward_kinematics(&theta, point.frame).expect("lengths").R.inverse_mul(Vec3([0.0, 0.0, 1.0]));
+            let up =
+                model.forward_kinematics(&theta, point.frame).expect("lengths").R.inverse_mul(Vec3([0.0, 0.0, 1.0]));
             (point.center, point.support) = (up * radius, Support::Sphere { radius });
         }
         let gains = Gains::critical(model.n(), 10.0);

@@ -103,7 +103,7 @@ impl PyModel {
     /// >>> bool(abs(dg - column).max() < 1e-12)
     /// True
     #[pyo3(signature = (
-        quantity, inputs, tangents, *, frame=None, coordinates=None, rows=None, about=None, tip_wrench=None, 
+        quantity, inputs, tangents, *, frame=None, coordinates=None, rows=None, about=None, tip_wrench=None,
         gravity=None, applied_wrenches=None, base_twist=None, base_acceleration=None, parameters=None,
         parameters_tangent=None, threads=None
     ))]

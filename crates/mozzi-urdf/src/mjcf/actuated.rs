@@ -96,7 +96,8 @@ fn compensated(model: &Model, parts: &[(String, f64)]) -> Result<Model, Error> {
     let of_sign = |sign: f64| {
         let mut robot = model.description().clone();
         for link in &mut robot.links {
-            let part = parts.iter().find(|(name, _)| *name == link.name).map_or(0.0, |(_, part)| (sign * part).max(0.0));
+            let part =
+                parts.iter().find(|(name, _)| *name == link.name).map_or(0.0, |(_, part)| (sign * part).max(0.0));
             link.inertia = SpatialInertia::from_parameters(link.inertia.to_parameters().map(|x| part * x));
         }
         robot.build()?.with_gravity(model.gravity().0)

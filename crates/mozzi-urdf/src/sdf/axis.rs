@@ -8,7 +8,8 @@ use crate::report::places::Place;
 use crate::text::context::Context;
 use crate::text::element::{Element, Value};
 use mozzi::Vec3;
-use mozzi::model::description::{Limits, UNLIMITED};
+use mozzi::model::UNLIMITED;
+use mozzi::model::description::Limits;
 use std::ops::Range;
 
 /// Which frame the direction is given in.

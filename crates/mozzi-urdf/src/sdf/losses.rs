@@ -3,7 +3,8 @@
 use super::base::{base_link, has_world, start_pose};
 use crate::urdf::write::constraint_losses;
 use crate::written::names_of;
-use mozzi::model::description::{FreeJoint, JointKind, UNLIMITED};
+use mozzi::model::UNLIMITED;
+use mozzi::model::description::{FreeJoint, JointKind};
 use mozzi::{Base, Description};
 
 pub(super) fn of(d: &Description) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! Joint limits.
 
-use super::description::Source;
+use super::description::{Limits, Source};
 use super::{Freedom, Model, Place};
 use crate::lie::SO3;
 use crate::linalg::Vec3;
@@ -17,6 +17,19 @@ pub struct Bounds {
     pub joints: Vec<[f64; 2]>,
     /// True if the values are angles (rad); false for prismatic joints (m).
     pub turns: Vec<bool>,
+}
+
+/// From this size on, a limit of position means none, as in SDFormat: files have no other number for a side without
+/// limit.
+pub const UNLIMITED: f64 = 1e16;
+
+impl Limits {
+    /// Lowest and highest position, −∞ and ∞ if there is none.
+    pub fn bounds(&self) -> [f64; 2] {
+        let [low, high] = self.position.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let low = if low > -UNLIMITED { low } else { f64::NEG_INFINITY };
+        [low, if high < UNLIMITED { high } else { f64::INFINITY }]
+    }
 }
 
 impl Bounds {

@@ -154,9 +154,6 @@ impl<C> JointKind<C> {
     }
 }
 
-/// From this size on, a limit of position means none, as in SDFormat: a side without limit has no other number in files.
-pub const UNLIMITED: f64 = 1e16;
-
 /// Limits of a joint; `None` means unlimited. A revolute joint without position limits is continuous.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
@@ -169,17 +166,6 @@ pub struct Limits {
     pub effort: Option<f64>,
     /// rad/s² or m/s²: the smaller of URDF 1.2's `acceleration` and `deceleration`.
     pub acceleration: Option<f64>,
-}
-
-impl Limits {
-    /// Lowest and highest position, −∞ and ∞ if there is none.
-    pub fn bounds(&self) -> [f64; 2] {
-        let [low, high] = self.position.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        [
-            if low > -UNLIMITED { low } else { f64::NEG_INFINITY },
-            if high < UNLIMITED { high } else { f64::INFINITY },
-        ]
-    }
 }
 
 /// The coupling of a mimic joint: θ = ratio · θ_source + offset.
