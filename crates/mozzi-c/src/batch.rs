@@ -1,6 +1,6 @@
 //! Many states at once.
 
-use crate::border::{check_finite, slice, slice_mut};
+use crate::border::{Span, check_apart, check_finite, slice, slice_mut, span};
 use crate::handle::{Handle, borrow, check_pointer, clear, free, kind, put};
 use crate::program::ProgramHandle;
 use crate::robot::{Frame, ModelHandle, Robot};
@@ -123,6 +123,13 @@ impl Prepared {
     }
 }
 
+/// The tables of an environment.
+fn tables<'a>(environment: &BatchEnvironment<'a>) -> impl Iterator<Item = (&'static str, Span)> + use<'a> {
+    let own = [("the gravity of each", environment.gravity), ("the parameters of each", environment.parameters)];
+    let wrenches = environment.wrenches.iter().map(|(_, table)| ("a wrench", span(table)));
+    own.into_iter().filter_map(|(name, table)| Some((name, span(table?)))).chain(wrenches)
+}
+
 /// The numbers of this many rows.
 fn count(states: usize, width: usize) -> Outcome<usize> {
     match states.checked_mul(width) {
@@ -239,35 +246,24 @@ pub unsafe extern "C" fn mozzi_batch_compute(
             check_finite(numbers, declared.name)?;
             given.push(numbers);
         }
-        let mut places: Vec<&mut [f64]> = Vec::with_capacity(output_count);
-        let mut taken: Vec<(usize, usize)> = given.iter().map(|numbers| span(numbers)).collect();
-        let widths = query.output_lengths(&prepared.robot.model);
-        for ((table, declared), width) in
-            slice(outputs, output_count, "outputs")?.iter().zip(declaration.outputs).zip(widths)
-        {
-            crate::border::check_length(declared.name, table.length, count(states, width)?)?;
-            let place = (table.data.addr(), table.data.addr() + 8 * table.length);
-            if table.length > 0 && taken.iter().any(|other| place.0 < other.1 && other.0 < place.1) {
-                let expected = "arrays of their own for the outputs of a batch";
-                return refuse!(
-                    Status::INVALID_ARGUMENT,
-                    "{} overlaps another array, expected {expected}",
-                    declared.name
-                );
-            }
-            taken.push(place);
-            places.push(slice_mut(table.data, table.length, declared.name)?);
-        }
         let batch = prepared.batch()?;
         prepared.with_environment(environment, states, |environment| {
+            let inputs = declaration.inputs.iter().zip(&given).map(|(input, numbers)| (input.name, span(numbers)));
+            let mut taken: Vec<(&str, Span)> = inputs.chain(tables(environment)).collect();
+            let mut places: Vec<&mut [f64]> = Vec::with_capacity(output_count);
+            let widths = query.output_lengths(&prepared.robot.model);
+            for ((table, declared), width) in
+                slice(outputs, output_count, "outputs")?.iter().zip(declaration.outputs).zip(widths)
+            {
+                crate::border::check_length(declared.name, table.length, count(states, width)?)?;
+                let place = (table.data.cast_const(), table.length);
+                check_apart(declared.name, place, taken.iter().copied())?;
+                taken.push((declared.name, place));
+                places.push(slice_mut(table.data, table.length, declared.name)?);
+            }
             batch.compute(query, &given, environment, &mut places).map_err(|error| of_batch(&error))
         })
     })
-}
-
-fn span(numbers: &[f64]) -> (usize, usize) {
-    let first = numbers.as_ptr().addr();
-    (first, first + 8 * numbers.len())
 }
 
 /// `MOZZI_AUTOMATIC`.
@@ -311,14 +307,18 @@ pub unsafe extern "C" fn mozzi_batch_simulate(
         if steps == 0 {
             return refuse!(Status::INVALID_ARGUMENT, "steps is 0, expected at least 1");
         }
-        let theta = slice_mut(theta, count(states, nq)?, "theta")?;
-        let dtheta = slice_mut(dtheta, count(states, n)?, "dtheta")?;
-        let tau = slice(tau, count(states, n)?, "tau")?;
-        for (numbers, name) in [(&*theta, "theta"), (&*dtheta, "dtheta"), (tau, "tau")] {
-            check_finite(numbers, name)?;
-        }
+        let (nq, n) = (count(states, nq)?, count(states, n)?);
+        let tau = slice(tau, n, "tau")?;
+        check_finite(slice(theta.cast_const(), nq, "theta")?, "theta")?;
+        check_finite(slice(dtheta.cast_const(), n, "dtheta")?, "dtheta")?;
+        check_finite(tau, "tau")?;
         let batch = prepared.batch()?;
         prepared.with_environment(environment, states, |environment| {
+            let [to_theta, to_dtheta] = [(theta.cast_const(), nq), (dtheta.cast_const(), n)];
+            let others = || tables(environment).chain([("tau", span(tau))]);
+            check_apart("theta", to_theta, others().chain([("dtheta", to_dtheta)]))?;
+            check_apart("dtheta", to_dtheta, others())?;
+            let (theta, dtheta) = (slice_mut(theta, nq, "theta")?, slice_mut(dtheta, n, "dtheta")?);
             batch.simulate(theta, dtheta, tau, environment, method, duration, steps).map_err(|error| of_batch(&error))
         })
     })

@@ -32,6 +32,30 @@ pub unsafe fn slice_mut<'a, T>(pointer: *mut T, length: usize, name: &str) -> Ou
     Ok(unsafe { std::slice::from_raw_parts_mut(pointer, length) })
 }
 
+/// The place of numbers in memory.
+pub type Span = (*const f64, usize);
+
+pub fn span(numbers: &[f64]) -> Span {
+    (numbers.as_ptr(), numbers.len())
+}
+
+/// True if two arrays share memory.
+#[inline(always)]
+pub fn overlap((a, a_length): Span, (b, b_length): Span) -> bool {
+    let (a, b) = (a.addr(), b.addr());
+    a < b.wrapping_add(8 * b_length) && b < a.wrapping_add(8 * a_length)
+}
+
+/// Checks that an array that is written overlaps none of these.
+pub fn check_apart<'a>(name: &str, written: Span, others: impl IntoIterator<Item = (&'a str, Span)>) -> Outcome {
+    match others.into_iter().find(|(_, other)| written.1 > 0 && other.1 > 0 && overlap(written, *other)) {
+        Some((other, _)) => {
+            refuse!(Status::INVALID_ARGUMENT, "{name} overlaps {other}, expected arrays of their own")
+        }
+        None => Ok(()),
+    }
+}
+
 /// Copies numbers out.
 ///
 /// # Safety

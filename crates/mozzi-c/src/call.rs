@@ -1,6 +1,6 @@
 //! One quantity at one state: from C's pointers to the kernel and back, without allocation.
 
-use crate::border::{check_finite, slice};
+use crate::border::{check_finite, overlap, slice, span};
 use crate::environment::CEnvironment;
 use crate::handle::{borrow, check_pointer};
 use crate::robot::{ModelHandle, Robot, shapes};
@@ -65,13 +65,6 @@ fn is_by_rows(&[blocks, rows, columns]: &[usize; 3], &[block, row, column]: &[is
     (columns <= 1 || column == 1)
         && (rows <= 1 || row == columns as isize)
         && (blocks <= 1 || block == (rows * columns) as isize)
-}
-
-/// True if two arrays share memory.
-#[inline(always)]
-pub fn overlap(a: *const f64, a_length: usize, b: *const f64, b_length: usize) -> bool {
-    let (a, b) = (a.addr(), b.addr());
-    a < b.wrapping_add(8 * b_length) && b < a.wrapping_add(8 * a_length)
 }
 
 /// Copies numbers by rows to their place.
@@ -213,8 +206,8 @@ unsafe fn checked<const I: usize, const O: usize>(
         let (data, [block, row, column]) = (out.data.cast_const(), out.strides);
         is_direct[k] = (is_by_rows(shape, &out.strides)
             || output.is_symmetric && is_by_rows(shape, &[block, column, row]))
-            && !state.iter().any(|input| overlap(data, length, input.as_ptr(), input.len()))
-            && !places[..k].iter().any(|other| overlap(data, length, other.as_ptr(), other.len()));
+            && !state.iter().any(|input| overlap((data, length), span(input)))
+            && !places[..k].iter().any(|other| overlap((data, length), span(other)));
         places[k] = if is_direct[k] {
             // SAFETY: the caller's promise, and no other slice of this call has a part of it.
             unsafe { std::slice::from_raw_parts_mut(out.data, length) }
@@ -264,7 +257,8 @@ unsafe fn checked<const I: usize, const O: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::{is_by_rows, overlap};
+    use super::is_by_rows;
+    use crate::border::overlap;
 
     #[test]
     fn rows_without_gaps_are_told_from_others() {
@@ -282,7 +276,8 @@ mod tests {
     fn arrays_overlap_if_they_share_a_number() {
         let x = [0.0; 10];
         let at = |k: usize| x[k..].as_ptr();
-        assert!(overlap(at(0), 5, at(4), 5) && overlap(at(4), 5, at(0), 5) && overlap(at(2), 1, at(0), 10));
-        assert!(!overlap(at(0), 5, at(5), 5) && !overlap(at(5), 5, at(0), 5));
+        let share = |a: usize, m: usize, b: usize, n: usize| overlap((at(a), m), (at(b), n));
+        assert!(share(0, 5, 4, 5) && share(4, 5, 0, 5) && share(2, 1, 0, 10));
+        assert!(!share(0, 5, 5, 5) && !share(5, 5, 0, 5));
     }
 }

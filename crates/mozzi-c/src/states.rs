@@ -1,20 +1,11 @@
 //! Named states, and the operations ⊕ and ⊖ on positions.
 
-use crate::border::{check_finite, copy_out, put_if_wanted, slice, slice_mut, text};
-use crate::call::overlap;
+use crate::border::{check_apart, check_finite, copy_out, put_if_wanted, slice, slice_mut, span, text};
 use crate::handle::borrow;
 use crate::robot::ModelHandle;
-use crate::status::{Outcome, Status, guard, of_model, refuse};
+use crate::status::{Outcome, Status, guard, of_model};
 use mozzi::model::State;
 use std::ffi::c_char;
-
-/// Checks that an array that is written does not overlap one that is read.
-fn check_apart(name: &str, (written, length): (*const f64, usize), other: &str, read: &[f64]) -> Outcome {
-    if overlap(written, length, read.as_ptr(), read.len()) {
-        return refuse!(Status::INVALID_ARGUMENT, "{name} overlaps {other}, expected arrays of their own");
-    }
-    Ok(())
-}
 
 /// Writes the parts of a state that are wanted.
 ///
@@ -85,7 +76,7 @@ pub unsafe extern "C" fn mozzi_integrate(
         robot.check_theta(slice(theta.cast_const(), robot.model.nq(), "theta")?, "theta")?;
         check_finite(dtheta, "dtheta")?;
         check_finite(&[h], "h")?;
-        check_apart("theta", (theta.cast_const(), robot.model.nq()), "dtheta", dtheta)?;
+        check_apart("theta", (theta.cast_const(), robot.model.nq()), [("dtheta", span(dtheta))])?;
         mozzi::model::integrate(&robot.model, slice_mut(theta, robot.model.nq(), "theta")?, dtheta, h);
         Ok(())
     })
@@ -110,8 +101,7 @@ pub unsafe extern "C" fn mozzi_difference(
         robot.check_theta(theta0, "theta0")?;
         robot.check_theta(theta1, "theta1")?;
         let output = (difference.cast_const(), robot.model.n());
-        check_apart("difference", output, "theta0", theta0)?;
-        check_apart("difference", output, "theta1", theta1)?;
+        check_apart("difference", output, [("theta0", span(theta0)), ("theta1", span(theta1))])?;
         mozzi::model::difference(&robot.model, theta0, theta1, slice_mut(difference, robot.model.n(), "difference")?);
         Ok(())
     })

@@ -130,7 +130,11 @@ impl Controller {
                 Box::new(ComputedTorque::new(model, reference, self.gains(model, "p", "d", None)?).map_err(place)?)
             }
             "standing" => {
-                let (feet, ground) = feet(model, contacts, &start)?;
+                let (mut feet, ground) = feet(robot, contacts, &start)?;
+                for foot in &mut feet {
+                    let frame = model.frame(robot.frame_name(foot.frame));
+                    foot.frame = frame.map_err(|why| Failure::wrong(format!("{}: model: {why}", self.place())))?;
+                }
                 let gains = Gains::critical(model.n(), 1.0 / self.response);
                 Box::new(Standing::new(model, reference, gains, feet, ground).map_err(place)?)
             }

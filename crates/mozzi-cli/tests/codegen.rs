@@ -53,6 +53,21 @@ fn files_of_each_language() {
     {
         assert!(several.contains(argument), "{argument} in {several}");
     }
+    // names that no language has
+    let link = |name: &str| format!("<link name=\"{name}\"/>");
+    let joint = |name: &str, parent: &str, child: &str| {
+        let ends = format!("<parent link=\"{parent}\"/><child link=\"{child}\"/>");
+        format!("<joint name=\"{name}\" type=\"continuous\">{ends}<axis xyz=\"0 1 0\"/></joint>")
+    };
+    let (links, first) = (["base", "left foot", "right.foot"].map(link).concat(), joint("j", "base", "left foot"));
+    let robot = format!("<robot name=\"odd\">{links}{first}{}</robot>", joint("k", "left foot", "right.foot"));
+    let robot = common::file(&folder, "odd.urdf", &robot);
+    let flags = ["--lang", "c", "--argument", "wrench=left foot", "--argument", "wrench=right.foot", "--out", out];
+    text(&[&["codegen", &robot, "--quantity", "inverse-dynamics"][..], &flags].concat());
+    let odd = std::fs::read_to_string(std::path::Path::new(out).join("odd.h")).expect("a file");
+    for frame in ["left foot", "right.foot"] {
+        assert!(odd.contains(&format!("that the frame `{frame}` applies")), "{odd}");
+    }
 }
 
 /// Tasks have rows, and quantities of constraints need constraints.

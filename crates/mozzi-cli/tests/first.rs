@@ -1,6 +1,6 @@
 //! What people type first: each guess works, or says in one line what does; and what is printed fits a screen.
 
-use crate::common::{complaint, file, folder, json, mozzi, numbers, screen, text, words};
+use crate::common::{assert_close, complaint, file, folder, json, mozzi, numbers, screen, text, words};
 
 const Q: &str = "--q=0,-1.2,1.5,0.3,1.1,0";
 
@@ -334,6 +334,13 @@ fn a_robot_stands_by_a_name() {
     assert!(fall.abs() < 1e-3, "{fall}");
     let page = screen(&words, 100);
     assert!(page.contains("roll") && page.contains("com x"), "{page}");
+    let (folder, robot) = (folder("first_standing"), mozzi_urdf::embedded::text("anymal").expect("embedded"));
+    let fixed = r#"<joint name="of_more" type="fixed"><parent link="base"/><child link="more"/></joint>"#;
+    let robot = robot.replacen("<link ", &format!("<link name=\"more\"/>{fixed}<link "), 1);
+    let robot = file(&folder, "more.urdf", &robot).replace('\\', "/");
+    let controller = file(&folder, "own.json", &format!(r#"{{"controller": "standing", "model": "{robot}"}}"#));
+    let own = json(&words.map(|word| if word == "standing" { controller.as_str() } else { word }));
+    assert_close(&numbers(&own["theta"][rows.len() - 1]), &numbers(&rows[rows.len() - 1]), 1e-6);
 }
 
 #[test]

@@ -74,3 +74,23 @@ fn wrong_goals() {
         wrong(&["--in", &file(&folder, name, text)], &[words]);
     }
 }
+
+/// SDFormat joints with a lower limit alone.
+#[test]
+fn a_missing_limit_is_none() {
+    let joint = |kind: &str, parent: &str, child: &str, axis: &str| {
+        let ends = format!("<parent>{parent}</parent><child>{child}</child>");
+        let axis = format!("<axis><xyz>{axis}</xyz><limit><lower>0</lower></limit></axis>");
+        format!("<joint name=\"to_{child}\" type=\"{kind}\">{ends}{axis}</joint>")
+    };
+    let links = ["a", "b"].map(|name| format!("<link name=\"{name}\"><pose>0 0 0.4 0 0 0</pose></link>")).concat();
+    let fixed = "<joint name=\"fix\" type=\"fixed\"><parent>world</parent><child>base</child></joint>";
+    let joints = [joint("revolute", "base", "a", "0 1 0"), joint("prismatic", "a", "b", "1 0 0")].concat();
+    let model = format!("<model name=\"m\"><link name=\"base\"/>{fixed}{links}{joints}</model>");
+    let robot = file(&folder("ik_one_sided"), "arm.sdf", &format!("<sdf version=\"1.9\">{model}</sdf>"));
+    let page = text(&["info", &robot]);
+    assert!(page.contains("lowest") && !page.contains("highest"), "{page}");
+    let found = json(&["ik", &robot, "--end-effector", "b", "--position=-0.9,0,0.4"]);
+    let theta = numbers(&found["theta"]);
+    assert!((theta[0] - std::f64::consts::PI).abs() < 1e-6 && (theta[1] - 0.9).abs() < 1e-6, "{theta:?}");
+}

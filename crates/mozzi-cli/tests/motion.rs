@@ -374,3 +374,18 @@ fn the_midpoint_rule_halves_a_step_that_is_too_long() {
     let most = kinetic.iter().copied().fold(0.0, f64::max);
     assert!(kinetic.len() == 41 && high - low < 0.2 * most, "{low} to {high}, {most}");
 }
+
+#[test]
+fn tables_without_rows_are_refused() {
+    let path = folder("motion_no_rows").join("empty.npy");
+    let columns: String = (1..=6).map(|k| format!("('theta_{k}', '<f8'), ")).collect();
+    let header = format!("{{'descr': [('t', '<f8'), {columns}], 'fortran_order': False, 'shape': (0,)}}\n");
+    let length = u16::try_from(header.len()).expect("short").to_le_bytes();
+    std::fs::write(&path, [b"\x93NUMPY\x01\x00", &length[..], header.as_bytes()].concat()).expect("a file");
+    let path = path.to_str().expect("text");
+    let follow = ["simulate", "ur5", "--controller", "computed-torque", "--time", "0.1", "--follow", path];
+    for line in [&["trajectory", "ur5", "--via", path][..], &follow] {
+        let (code, said) = complaint(line);
+        assert!(code == 1 && said.contains("empty.npy has no rows"), "{said}");
+    }
+}

@@ -14,7 +14,7 @@ use mozzi::quantities::{
 use mozzi::random::Random;
 use mozzi::{Base, Model, Scalar, Task, TaskFrame, Vec3};
 use mozzi_engine::{
-    Arguments, Derivative, EmitError, Language, Precision, Program, Traced, emit, emit_programs, record,
+    Arguments, Derivative, EmitError, Language, Precision, Program, SourceFile, Traced, emit, emit_programs, record,
     record_quantity,
 };
 use std::process::Command;
@@ -316,4 +316,25 @@ fn files_are_written_where_they_differ() {
     std::fs::write(folder.join("ur5.h"), "changed").expect("a file");
     written();
     assert_eq!(std::fs::read_to_string(folder.join("ur5.h")).expect("text"), files[0].text);
+}
+
+#[test]
+fn threads_write_into_one_folder() {
+    let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("threads write");
+    let _ = std::fs::remove_dir_all(&folder);
+    let write = |k: usize| {
+        for text in 0..200 {
+            let file = SourceFile { name: format!("{k}.c"), text: format!("{k} {text}") };
+            let path = file.write(&folder).expect("written");
+            assert_eq!(std::fs::read_to_string(path).expect("a file"), file.text);
+        }
+    };
+    std::thread::scope(|scope| (0..2).for_each(|k| drop(scope.spawn(move || write(k)))));
+}
+
+#[test]
+fn a_cosine_without_its_sine_is_counted() {
+    let of = |f: fn(Traced) -> Traced| record("f", &[("x", 1)], |x| vec![("y", vec![f(x[0][0])])]).expect("short");
+    let both = of(|x| x.sin_cos().0 + x.sin_cos().1);
+    assert_eq!([of(|x| x.sin_cos().1), both].map(|program| program.count().sin_cos), [1, 1]);
 }

@@ -31,7 +31,9 @@ pub fn table(model: &Model) -> String {
     );
     for joint in model.joints() {
         let limits = joint.limits;
-        let position = limits.position.map_or_else(|| "free".to_string(), |[low, high]| format!("{low} … {high}"));
+        let [low, high] = limits.bounds();
+        let is_free = low.is_infinite() && high.is_infinite();
+        let position = if is_free { "free".to_string() } else { format!("{low} … {high}") };
         let most = |limit: Option<f64>| limit.map_or_else(String::new, |x| x.to_string());
         let cells =
             [&joint.name, joint.kind.name(), &joint.child, &position, &most(limits.velocity), &most(limits.effort)];

@@ -91,6 +91,22 @@ def test_second_derivatives_are_symmetric(ur5, random):
     assert_close(np.array(columns), np.array(columns).T)
 
 
+def test_rows_of_a_task_and_the_point_of_a_momentum(ur5, random):
+    theta, dtheta, _ = state(ur5, random)
+    along, h = random.normal(size=6), 1e-6
+    for name, subject in [
+        ("task_space_dynamics", {"rows": [3, 5], "coordinates": "space"}),
+        ("momentum", {"about": [0.3, -0.2, 1.0]}),
+    ]:
+        value, rate = ur5.jvp(name, [theta, dtheta], [along, None], **subject)
+
+        def at(h):
+            return flat(getattr(ur5, name)(theta + h * along, dtheta, **subject))
+
+        assert_close(flat(value), at(0.0))
+        assert_close(flat(rate), (at(h) - at(-h)) / (2 * h), 1 + np.abs(flat(value)).max(), tolerance=1e-7)
+
+
 def test_shapes_dtypes_and_errors(ur5, random):
     theta = random.uniform(-1, 1, (4, 1, 6)).astype(np.float32)
     value, rate = ur5.jvp("mass_matrix", [theta], [np.ones((3, 6), np.float32)])
@@ -112,7 +128,7 @@ def test_shapes_dtypes_and_errors(ur5, random):
             lambda: ur5.jvp("mass_matrix", [theta], [[0.0] * 5]),
         ),
         ("parameters_tangent has shape", lambda: ur5.jvp("mass_matrix", [theta], [None], parameters_tangent=[1.0])),
-        ("there is no frame `nowhere`", lambda: ur5.jvp("mass_matrix", [theta], [None], frame="nowhere")),
+        ("there is no frame `nowhere`", lambda: ur5.jvp("body_jacobian", [theta], [None], frame="nowhere")),
         ("there is no frame `nowhere`", lambda: ur5.engine("mass_matrix", "nowhere")),
         ("there is no frame `nowhere`", lambda: ur5.compile("mass_matrix", frame="nowhere")),
     ]:
@@ -121,5 +137,7 @@ def test_shapes_dtypes_and_errors(ur5, random):
     # what the quantity's method does not take
     with pytest.raises(TypeError, match=r"gravity_forces\(\) got an unexpected keyword argument 'base_acceleration'"):
         ur5.jvp("gravity_forces", [theta], [None], base_acceleration=[0.0] * 6)
+    with pytest.raises(TypeError, match=r"mass_matrix\(\) got an unexpected keyword argument 'frame'"):
+        ur5.jvp("mass_matrix", [theta], [None], frame="tool0")
     with pytest.raises(TypeError, match=r"mass_matrix\(\) got an unexpected keyword argument 'gravity'"):
         ur5.jvp("mass_matrix", [theta], [None], gravity=[0.0, 0.0, 0.0])

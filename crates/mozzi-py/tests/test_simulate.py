@@ -257,6 +257,8 @@ def test_a_bool_counts_where_it_becomes_true():
         run(lambda t, theta, dtheta: theta[0] < 0.1)
     with pytest.raises(TypeError, match="the function of until answered None, expected a number or a bool"):
         run(lambda t, theta, dtheta: None)
+    with pytest.raises(ValueError, match="the function of until answered nan at t = 0.5"):
+        run(lambda t, theta, dtheta: np.nan if t > 0.5 else 1.0)
 
 
 def test_torques_of_each_step_are_a_rollouts(ur5):

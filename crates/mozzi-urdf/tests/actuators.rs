@@ -188,3 +188,19 @@ fn what_is_not_computed_is_named() {
     let error = mozzi_urdf::parse("a.xml", misspelt).expect_err("a misspelling").to_string();
     assert!(error.contains("did you mean `timeconst`") || error.contains("timeconts"), "{error}");
 }
+
+/// A `gravcomp` below 0 adds weight, beside one above 0.
+#[test]
+fn gravity_compensation_may_be_negative() {
+    let force = |part: &str| {
+        let text = SERVOS.replace(r#"gravcomp="0.75""#, &format!(r#"gravcomp="{part}""#));
+        let model = mozzi_urdf::parse("servos.xml", &text).expect("sound").build().expect("sound");
+        let mut input = Actuated::new(&model, &actuation(&text), &[]).expect("its own robot");
+        let mut tau = [0.0; 4];
+        input.add_forces(&model.neutral_configuration::<f64>(), &[0.0; 4], &mut tau);
+        tau[0]
+    };
+    let weight = 2.0 * 9.81 * 0.2;
+    let found = force("-0.5") - force("0.5");
+    assert!((found - weight).abs() < 1e-12, "{found}, expected {weight}");
+}

@@ -891,7 +891,8 @@ enum {
 enum { MOZZI_LIMITS_IGNORE = 0, MOZZI_LIMITS_REPORT = 1, MOZZI_LIMITS_RESPECT = 2 };
 
 /* Replaces the states of many robots, θ (states × nq) and θ̇ (states × n), by those after `steps` steps in `duration`
- * seconds under constant torques; the method is explicit, with fixed steps, which excludes robots with dry friction. */
+ * seconds under constant torques; the method is explicit, with fixed steps, which excludes robots with dry friction.
+ * Arrays must not overlap. */
 mozzi_status mozzi_batch_simulate(const mozzi_batch *batch, size_t states, double *theta, double *dtheta,
                                   const double *tau, const mozzi_batch_environment *environment, int32_t method,
                                   double duration, size_t steps);

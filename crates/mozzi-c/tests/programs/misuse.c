@@ -263,12 +263,13 @@ static void edits(mozzi_model *model, mozzi_model *other) {
 static void many(mozzi_model *model, mozzi_model *other) {
     const size_t n = mozzi_model_n(model), states = 3;
     double *theta = calloc(states * n, sizeof *theta), *out = calloc(states * n, sizeof *out);
+    double *tau = calloc(states * n, sizeof *tau);
     mozzi_batch *batch = NULL;
     mozzi_table in;
     mozzi_table_out result;
     mozzi_batch_environment around = {NULL, NULL, NULL, NULL, 0};
     mozzi_batch_wrench wrench;
-    CHECK(theta != NULL && out != NULL);
+    CHECK(theta != NULL && out != NULL && tau != NULL);
     EXPECT(MOZZI_NULL, mozzi_batch_new(NULL, 1, &batch));
     EXPECT(MOZZI_NULL, mozzi_batch_new(model, 1, NULL));
     EXPECT(MOZZI_NULL, mozzi_batch_kernels_only(NULL, 1, &batch));
@@ -296,12 +297,12 @@ static void many(mozzi_model *model, mozzi_model *other) {
     result.data = out;
     theta[2] = NAN;
     EXPECT(MOZZI_NOT_FINITE, BATCH(MOZZI_GRAVITY_FORCES, 1));
-    EXPECT(MOZZI_NOT_FINITE, mozzi_batch_simulate(batch, states, theta, out, out, NULL, 0, 1, 1));
+    EXPECT(MOZZI_NOT_FINITE, mozzi_batch_simulate(batch, states, theta, out, tau, NULL, 0, 1, 1));
     theta[2] = 0;
     EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_compute(batch, MOZZI_GRAVITY_FORCES, NULL, (size_t)-1, &in, 1, &around, &result, 1));
-    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, (size_t)-1, theta, out, out, NULL, 0, 1, 1));
+    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, (size_t)-1, theta, out, tau, NULL, 0, 1, 1));
     {
-        double *each = calloc(states * 6, sizeof *each);
+        double *each = calloc(states * (n + 6), sizeof *each);
         CHECK(each != NULL);
         each[4] = NAN;
         around.gravity_of_each = each;
@@ -312,6 +313,16 @@ static void many(mozzi_model *model, mozzi_model *other) {
         around.wrenches = &wrench;
         around.wrench_count = 1;
         EXPECT(MOZZI_NOT_FINITE, BATCH(MOZZI_GRAVITY_FORCES, 1));
+        each[4] = 0;
+        result.data = each + 1;
+        EXPECT(MOZZI_INVALID_ARGUMENT, BATCH(MOZZI_GRAVITY_FORCES, 1));
+        result.data = out;
+        OK(mozzi_batch_simulate(batch, states, theta, out, tau, &around, 0, 1, 1));
+        EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, out, &around, 0, 1, 1));
+        EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, theta, tau, &around, 0, 1, 1));
+        EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, each, tau, &around, 0, 1, 1));
+        memset(theta, 0, states * n * sizeof *theta);
+        memset(out, 0, states * n * sizeof *out);
         free(each);
     }
     OK(mozzi_model_frame_at(other, 0, &wrench.frame));
@@ -319,11 +330,12 @@ static void many(mozzi_model *model, mozzi_model *other) {
     around.wrenches = &wrench;
     around.wrench_count = 1;
     EXPECT(MOZZI_FOREIGN, BATCH(MOZZI_GRAVITY_FORCES, 1));
-    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, out, NULL, 77, 1, 1));
-    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, out, NULL, 0, 1, 0));
-    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, out, NULL, MOZZI_MIDPOINT, 1, 1));
-    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, out, NULL, 0, -1, 1));
+    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, tau, NULL, 77, 1, 1));
+    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, tau, NULL, 0, 1, 0));
+    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, tau, NULL, MOZZI_MIDPOINT, 1, 1));
+    EXPECT(MOZZI_INVALID_ARGUMENT, mozzi_batch_simulate(batch, states, theta, out, tau, NULL, 0, -1, 1));
     OK(mozzi_batch_free(batch));
+    free(tau);
     free(theta);
     free(out);
 }

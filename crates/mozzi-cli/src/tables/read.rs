@@ -45,6 +45,14 @@ pub fn read_joints(file: &str, model: &Model, fixed: &Model, how: &How) -> Resul
 }
 
 fn read_by<'m>(file: &str, choose: Choose<'_, 'm>, how: &How) -> Result<Samples> {
+    let samples = by_format(file, choose, how)?;
+    if samples.count == 0 {
+        return Err(Failure::wrong(format!("{file} has no rows, expected at least one")));
+    }
+    Ok(samples)
+}
+
+fn by_format<'m>(file: &str, choose: Choose<'_, 'm>, how: &How) -> Result<Samples> {
     if bag::is_bag(file) {
         return bag::read(file, choose, &how.request);
     }

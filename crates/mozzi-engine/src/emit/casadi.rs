@@ -80,9 +80,8 @@ pub fn emit_casadi(model: &Model, quantities: &[Query], arguments: Arguments) ->
         let mut function = written(&format!("{}_core", external.name), &external.program, &mut BTreeSet::new());
         function.about.clone_from(&external.about);
         let query = external.query.map(|k| quantities[k]);
-        for argument in function.inputs.iter_mut().chain(&mut function.outputs) {
-            argument.about =
-                query.map(|query| describe::array(model, query, arguments, &argument.name)).unwrap_or_default();
+        if let Some(query) = query {
+            function.describe_arrays(|name| describe::array(model, query, arguments, name));
         }
         function
     });

@@ -32,6 +32,15 @@ impl Emitted<'_> {
         lines
     }
 
+    /// Describes the arrays by their names in the program.
+    pub fn describe_arrays(&mut self, about: impl Fn(&str) -> String) {
+        let Program { inputs, outputs, .. } = self.program;
+        let names = inputs.iter().map(|input| &input.name).chain(outputs.iter().map(|output| &output.name));
+        for (argument, name) in self.inputs.iter_mut().chain(&mut self.outputs).zip(names) {
+            argument.about = about(name);
+        }
+    }
+
     pub fn has(&self, of_kind: impl Fn(Function) -> bool) -> bool {
         self.program.steps.iter().any(|step| matches!(step, Step::Apply(function, _) if of_kind(*function)))
     }

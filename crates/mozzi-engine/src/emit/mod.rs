@@ -25,6 +25,7 @@ use mozzi::scalar::Float;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Language of emitted source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -80,7 +81,10 @@ impl SourceFile {
         let path = folder.join(&self.name);
         if std::fs::read(&path).ok().as_deref() != Some(self.text.as_bytes()) {
             // written next to its destination and renamed: a full disk leaves an older file intact
-            let part = folder.join(format!(".mozzi-{}.part", std::process::id()));
+            // threads write at the same time
+            static COUNT: AtomicUsize = AtomicUsize::new(0);
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let part = folder.join(format!(".mozzi-{}-{count}.part", std::process::id()));
             let written = std::fs::create_dir_all(folder)
                 .and_then(|()| std::fs::write(&part, &self.text))
                 .and_then(|()| std::fs::rename(&part, &path))
@@ -162,9 +166,7 @@ pub fn emit(
         let frame = quantity.subject.frame.map(|frame| format!("_{}", model.frame_name(frame))).unwrap_or_default();
         let mut function = written(&format!("{}{frame}", program.name()), program, &mut taken);
         function.about = describe::quantity(model, *quantity, program);
-        for argument in function.inputs.iter_mut().chain(&mut function.outputs) {
-            argument.about = describe::array(model, *quantity, arguments, &argument.name);
-        }
+        function.describe_arrays(|name| describe::array(model, *quantity, arguments, name));
         functions.push(function);
     }
     let about = describe::robot(model, arguments, precision);

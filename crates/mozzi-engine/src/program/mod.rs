@@ -26,6 +26,7 @@ pub use too_long::TooLong;
 pub use traced::Traced;
 
 use mozzi::Scalar;
+use std::collections::BTreeSet;
 
 /// A number of a program: the index of the step that computes it.
 pub type Value = u32;
@@ -124,17 +125,18 @@ impl Program {
 
     /// Its operation counts.
     pub fn count(&self) -> Count {
-        let mut count = Count::default();
+        let (mut count, mut angles) = (Count::default(), BTreeSet::new());
         for step in &self.steps {
-            let Step::Apply(function, _) = step else { continue };
+            let Step::Apply(function, values) = step else { continue };
             *match function {
                 Function::Add | Function::Sub => &mut count.add,
                 Function::Mul => &mut count.mul,
                 Function::Div => &mut count.div,
                 Function::MulAdd | Function::MulSub | Function::NegMulAdd | Function::NegMulSub => &mut count.fma,
                 Function::Sqrt => &mut count.sqrt,
-                Function::Sin => &mut count.sin_cos,
-                Function::Cos => continue, // counted with its sine
+                // a pair of one angle
+                Function::Sin | Function::Cos if !angles.insert(values[0]) => continue,
+                Function::Sin | Function::Cos => &mut count.sin_cos,
                 Function::Neg | Function::Tanh | Function::Sgn => &mut count.other,
             } += 1;
         }

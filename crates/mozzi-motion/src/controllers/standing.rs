@@ -56,12 +56,13 @@ impl<'m, R: Reference> Standing<'m, R> {
         Ok(Standing { model, reference, gains, feet, ground, least: 0.0, forces: Vec::new() })
     }
 
-    /// The wrenches of forces along the ground's axes, in the feet's frames.
-    fn wrenches(&self, poses: &[SE3], axes: &[Vec3; 3], forces: &[f64]) -> Vec<(FrameId, Wrench)> {
+    /// The wrenches of forces along the ground's axes at the points that touch it, in the feet's frames.
+    fn wrenches(&self, touching: &[(SE3, Vec3)], axes: &[Vec3; 3], forces: &[f64]) -> Vec<(FrameId, Wrench)> {
         let of_foot = |(k, foot): (usize, &ContactPoint)| {
             let f = (0..3).fold(Vec3::zero(), |sum, i| sum + axes[i] * forces[3 * k + i]);
-            let f = poses[k].R.inverse_mul(f);
-            (foot.frame, Wrench { m: foot.center.cross(f), f })
+            let (T, point) = touching[k];
+            let f = T.R.inverse_mul(f);
+            (foot.frame, Wrench { m: point.cross(f), f })
         };
         self.feet.iter().enumerate().map(of_foot).collect()
     }
@@ -77,20 +78,22 @@ impl<R: Reference> Input for Standing<'_, R> {
 
         // rows of J, and J̇θ̇ + b Jθ̇
         let mut J = DMatrix::zeros(3 * k, n);
-        let (mut rates, mut poses) = (vec![0.0; 3 * k], Vec::with_capacity(k));
+        let (mut rates, mut touching) = (vec![0.0; 3 * k], Vec::with_capacity(k));
         for (i, foot) in self.feet.iter().enumerate() {
             let T = model.forward_kinematics(theta, foot.frame)?;
             let columns = model.body_jacobian(theta, foot.frame)?;
             let V = &columns * dtheta;
             let dV = &model.body_jacobian_rate(theta, dtheta, foot.frame)? * dtheta;
-            let at_point = |w: Vec3, v: Vec3| v + w.cross(foot.center);
-            let bias = at_point(dV.w, dV.v) + V.w.cross(at_point(V.w, V.v));
+            let point = foot.farthest(T.R.inverse_mul(axes[0]));
+            let at_point = |w: Vec3, v: Vec3| v + w.cross(point);
+            // what touches stays under the centre of a ball: only the centre moves
+            let bias = at_point(dV.w, dV.v) + V.w.cross(V.v + V.w.cross(foot.center));
             for (r, axis) in axes.iter().enumerate() {
                 let axis = T.R.inverse_mul(*axis);
                 columns.0.iter().enumerate().for_each(|(j, c)| J[(3 * i + r, j)] = at_point(c.w, c.v).dot(axis));
                 rates[3 * i + r] = bias.dot(axis) + BRAKE * at_point(V.w, V.v).dot(axis);
             }
-            poses.push(T);
+            touching.push((T, point));
         }
 
         // x = (θ̈, f); rows A x + s = b with s in the cones
@@ -132,7 +135,7 @@ impl<R: Reference> Input for Standing<'_, R> {
         let x = solve(&P, &q, &A, &b, &kinds)?;
 
         let (ddtheta, forces) = x.split_at(n);
-        let applied = self.wrenches(&poses, &axes, forces);
+        let applied = self.wrenches(&touching, &axes, forces);
         let environment = Environment { applied: &applied, ..model.environment() };
         let needed = model.inverse_dynamics(theta, dtheta, ddtheta, &environment)?;
         motors.iter().for_each(|&j| tau[j] += needed[j]);

@@ -13,9 +13,12 @@ pub(crate) trait Within {
     /// Puts each joint that is beyond a bound onto it.
     fn clamp(&self, theta: &mut [f64]);
 
-    /// Moves the guess in θ to anywhere within the bounds; for a joint without, half a turn or a metre around the
-    /// guess. A floating base and free joints stay.
+    /// Moves the guess in θ to anywhere within the joints' [ranges](Self::range) around it. A floating base and free
+    /// joints stay.
     fn randomize(&self, theta: &mut [f64], random: &mut Random);
+
+    /// The bounds of joint k; of an angle, and of a slide without a bound, a turn or two metres of them around a value.
+    fn range(&self, k: usize, around: f64) -> [f64; 2];
 }
 
 impl Within for Bounds {
@@ -40,7 +43,7 @@ impl Within for Bounds {
     }
 
     fn randomize(&self, theta: &mut [f64], random: &mut Random) {
-        for ((place, &[low, high]), turns) in self.places.iter().zip(&self.joints).zip(&self.turns) {
+        for (k, (place, &[_, high])) in self.places.iter().zip(&self.joints).enumerate() {
             let q = match place.freedom {
                 Freedom::One => &mut theta[place.q],
                 Freedom::Ball => {
@@ -51,11 +54,19 @@ impl Within for Bounds {
                 }
                 Freedom::Free => continue,
             };
-            let reach = if *turns { PI } else { 1.0 };
-            let low = if low.is_finite() { low } else { high.min(*q + reach) - 2.0 * reach };
-            let high = if high.is_finite() { high } else { low + 2.0 * reach };
+            let [low, high] = self.range(k, *q);
             *q = 0.5 * (low + high) + 0.5 * (high - low) * random.next();
         }
+    }
+
+    fn range(&self, k: usize, around: f64) -> [f64; 2] {
+        let ([low, high], turns) = (self.joints[k], self.turns[k]);
+        if !turns && (high - low).is_finite() {
+            return [low, high];
+        }
+        let reach = if turns { PI } else { 1.0 };
+        let low = low.max(high.min(around + reach) - 2.0 * reach);
+        [low, high.min(low + 2.0 * reach)]
     }
 }
 

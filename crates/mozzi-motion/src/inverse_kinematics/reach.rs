@@ -1,5 +1,6 @@
 //! Why a goal cannot be reached, in words: a direction in which no joint moves the frame, or an arm that is too short.
 
+use super::bounds::Within;
 use super::{Goal, InverseKinematics};
 use mozzi::model::integrate;
 use mozzi::nalgebra::{Matrix3, Vector3};
@@ -53,17 +54,11 @@ impl InverseKinematics<'_> {
             let mut at = moved(self.model, theta, start);
             for _ in 0..4 {
                 for k in 0..self.bounds.joints.len() {
-                    let turn = std::f64::consts::PI;
                     let [low, high] = self.bounds.joints[k];
-                    let is_turning = self.model.joints().nth(k)?.kind.name() != "prismatic";
-                    // an endless slide reaches everything
-                    let range = match low.is_finite() && high.is_finite() {
-                        true if is_turning => [low.max(-turn), high.min(turn)],
-                        true => [low, high],
-                        false if is_turning => [-turn, turn],
-                        false => return None,
-                    };
-                    at = self.farthest(&at, k, range, &distance)?;
+                    if !self.bounds.turns[k] && (high - low).is_infinite() {
+                        return None; // an endless slide reaches everything
+                    }
+                    at = self.farthest(&at, k, &distance)?;
                 }
             }
             most = most.max(distance(&at)?);
@@ -72,17 +67,12 @@ impl InverseKinematics<'_> {
     }
 
     /// θ with the joint's position that is farthest, by a grid that becomes finer.
-    fn farthest(
-        &self,
-        theta: &[f64],
-        k: usize,
-        [low, high]: [f64; 2],
-        distance: &dyn Fn(&[f64]) -> Option<f64>,
-    ) -> Option<Vec<f64>> {
+    fn farthest(&self, theta: &[f64], k: usize, distance: &dyn Fn(&[f64]) -> Option<f64>) -> Option<Vec<f64>> {
         let place = self.bounds.places[k].positions();
         if place.len() != 1 {
             return Some(theta.to_vec()); // a ball at the tip does not change the reach
         }
+        let [low, high] = self.bounds.range(k, theta[place.start]);
         let (mut best, mut at) = (theta.to_vec(), theta.to_vec());
         let mut most = distance(theta)?;
         let (mut center, mut width) = (0.5 * (low + high), 0.5 * (high - low));
@@ -221,6 +211,18 @@ mod tests {
         let told = why("ur5", Goal::Position(Vec3([1.5, 0.0, 0.089]))).expect("a reason");
         assert!(told.contains("out of reach") && told.contains("the arm reaches 0.9"), "{told}");
         assert_eq!(why("ur5", Goal::Position(Vec3([0.4, 0.2, 0.3]))), None);
+    }
+
+    #[test]
+    fn limits_beyond_half_a_turn_have_a_reach() {
+        let mut robot = mozzi_urdf::open("ur5").expect("embedded").description;
+        robot.joints.iter_mut().filter(|joint| joint.limits.position.is_some()).for_each(|joint| {
+            joint.limits.position = Some([3.5, 6.0]);
+        });
+        let model = robot.build().expect("sound");
+        let solver = InverseKinematics::new(&model, model.end_effector().expect("one")).expect("sound");
+        let why = solver.why_not(Goal::Position(Vec3([2.0, 2.0, 2.0])), &[4.0; 6]).expect("a reason");
+        assert!(why.contains("out of reach"), "{why}");
     }
 
     #[test]

@@ -76,13 +76,13 @@ impl Sampled {
                 fastest = fastest.min(limits.velocity[j] / rate.abs());
                 fastest = fastest.min((limits.acceleration[j] / acceleration.abs()).sqrt());
                 let [A, D, c] = torque(demand, now, j);
-                if c.abs() > limits.torque[j] {
+                let y = [1.0, -1.0].map(|sign| smallest_root(sign * A, sign * D, sign * c - limits.torque[j]));
+                let y = y[0].min(y[1]);
+                if c.abs() > limits.torque[j] || y == 0.0 {
                     let joint = model.velocity_names().nth(j).unwrap_or_default().to_string();
                     return Err(Error::TooWeak { joint, s: demand.s, needed: c.abs(), limit: limits.torque[j] });
                 }
-                for sign in [1.0, -1.0] {
-                    fastest = fastest.min(smallest_root(sign * A, sign * D, sign * c - limits.torque[j]));
-                }
+                fastest = fastest.min(y);
             }
         }
         if fastest.is_finite() { Ok(fastest) } else { Err(Error::Unlimited { s: 0.0 }) }
@@ -131,10 +131,13 @@ fn top([a, b, c]: [f64; 3]) -> f64 {
     if b >= a && b >= c && bend < 0.0 { b - (c - a) * (c - a) / (8.0 * bend) } else { 0.0 }
 }
 
-/// The smallest y > 0 at which A y² + D y + c, which is not positive at 0, becomes positive; ∞ if it never does.
+/// The smallest y ≥ 0 at which A y² + D y + c, which is not positive at 0, becomes positive; ∞ if it never does.
 fn smallest_root(A: f64, D: f64, c: f64) -> f64 {
     if c == f64::NEG_INFINITY {
         return f64::INFINITY;
+    }
+    if c == 0.0 && (D > 0.0 || D == 0.0 && A > 0.0) {
+        return 0.0;
     }
     let inside = D * D - 4.0 * A * c;
     if inside < 0.0 {
@@ -144,4 +147,18 @@ fn smallest_root(A: f64, D: f64, c: f64) -> f64 {
     let q = -0.5 * (D + inside.sqrt().copysign(D));
     let roots = [q / A, c / q];
     roots.into_iter().filter(|y| *y > 0.0 && y.is_finite()).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::smallest_root;
+
+    #[test]
+    fn parabolas_that_begin_at_zero_become_positive_at_once_or_later() {
+        assert_eq!(smallest_root(-1.0, 2.0, 0.0), 0.0);
+        assert_eq!(smallest_root(1.0, 0.0, 0.0), 0.0);
+        assert_eq!(smallest_root(2.0, -1.0, 0.0), 0.5);
+        assert_eq!(smallest_root(-1.0, -1.0, 0.0), f64::INFINITY);
+        assert_eq!(smallest_root(1.0, 1.0, -2.0), 1.0);
+    }
 }

@@ -1,10 +1,10 @@
 //! The controller that stands on given feet.
 
 use crate::anymal::{anymal, feet, mass, start};
-use mozzi::{SE3, Wrench};
+use mozzi::{SE3, Vec3, Wrench};
 use mozzi_motion::controllers::{Gains, Standing};
 use mozzi_motion::trajectories::Hold;
-use mozzi_sim::{Contacts, Input, Options, Plane, Simulation, applied};
+use mozzi_sim::{Contacts, Input, Options, Plane, Simulation, Support, applied};
 
 #[test]
 fn it_stands_within_its_cones_and_is_pushed() {
@@ -49,5 +49,29 @@ fn it_stands_within_its_cones_and_is_pushed() {
             let f = force.f.0;
             assert!(f[2] <= 1e-9 && f[0].hypot(f[1]) <= 0.6 * -f[2] + 1e-6);
         }
+    }
+}
+
+#[test]
+fn a_ball_is_held_at_the_point_that_touches() {
+    let model = anymal(0.0).with_gravity([2.5, 0.0, -9.48]).expect("sound");
+    let contacts = feet(&model, 0.6);
+    let theta = start(&model, &contacts, 0.0);
+    let (hold, still) = (Hold::new(&theta, model.n()), vec![0.0; model.n()]);
+    let torques = |radius: f64| {
+        let mut points = contacts.points.clone();
+        for point in &mut points {
+            let up =
+                model.forward_kinematics(&theta, point.frame).expect("lengths").R.inverse_mul(Vec3([0.0, 0.0, 1.0]));
+            (point.center, point.support) = (up * radius, Support::Sphere { radius });
+        }
+        let gains = Gains::critical(model.n(), 10.0);
+        let mut tau = still.clone();
+        let mut standing = Standing::new(&model, &hold, gains, points, SE3::identity()).expect("sound");
+        standing.torque(0.0, &theta, &still, &mut tau).expect("forces");
+        tau
+    };
+    for (ball, point) in torques(0.1).iter().zip(torques(0.0)) {
+        assert!((ball - point).abs() < 1e-4, "{ball} {point}");
     }
 }

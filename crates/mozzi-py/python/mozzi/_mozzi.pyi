@@ -298,10 +298,11 @@ class Model:
         """Compute the derivatives of θ̈ and λ of `constrained_forward_dynamics` at one state."""
     def jvp(
         self, quantity: str, inputs: Sequence[ArrayLike], tangents: Sequence[ArrayLike | None], *,
-        frame: str | None = None, tip_wrench: ArrayLike | None = None, gravity: ArrayLike | None = None,
-        applied_wrenches: Mapping[str, ArrayLike] | None = None, base_twist: ArrayLike | None = None,
-        base_acceleration: ArrayLike | None = None, parameters: ArrayLike | None = None,
-        parameters_tangent: ArrayLike | None = None, threads: int | None = None
+        frame: str | None = None, coordinates: Literal["body", "space"] | None = None,
+        rows: Sequence[int] | None = None, about: ArrayLike | None = None, tip_wrench: ArrayLike | None = None,
+        gravity: ArrayLike | None = None, applied_wrenches: Mapping[str, ArrayLike] | None = None,
+        base_twist: ArrayLike | None = None, base_acceleration: ArrayLike | None = None,
+        parameters: ArrayLike | None = None, parameters_tangent: ArrayLike | None = None, threads: int | None = None
     ) -> tuple[Any, Any]:
         """Compute a quantity and its derivative along a direction, exactly and without a step size."""
     # The quantities: from here on written by `cargo xtask docs`.

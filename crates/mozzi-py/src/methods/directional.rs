@@ -4,6 +4,7 @@ use crate::arguments::{Arguments, Given};
 use crate::array::{Numbers, common_leading, wrong_shape};
 use crate::environment::ArrayEnvironment;
 use crate::failure::{of_batch, of_model};
+use crate::methods::quantity::of_subject;
 use crate::model::PyModel;
 use crate::numpy::Element;
 use crate::results::Results;
@@ -63,8 +64,12 @@ impl PyModel {
     ///     velocities: of a floating base a body twist (ω, v), of a ball joint ω.
     /// frame : str, optional
     ///     A link or frame, if the quantity refers to one. Default: the end effector.
+    /// coordinates, rows : optional
+    ///     Those of a task, as for `task_space_dynamics`.
+    /// about : array_like, shape (3,), optional
+    ///     The point of a momentum.
     /// tip_wrench, gravity, applied_wrenches, base_twist, base_acceleration : optional
-    ///     The environment, as for the quantity's method; it is constant. Others than that method has are a TypeError.
+    ///     The environment, as for the quantity's method; it is constant.
     /// parameters : array_like, shape (..., p), optional
     ///     Inertial parameters in the order of `Model.parameters`. Default: the model's.
     /// parameters_tangent : array_like, shape (..., p), optional
@@ -83,6 +88,8 @@ impl PyModel {
     /// ------
     /// ValueError
     ///     For an unknown quantity, and for shapes that do not match; the message names the array.
+    /// TypeError
+    ///     For an argument that the quantity's method does not take.
     /// SingularError
     ///     If the mass matrix is singular. The message names the joint.
     ///
@@ -96,8 +103,9 @@ impl PyModel {
     /// >>> bool(abs(dg - column).max() < 1e-12)
     /// True
     #[pyo3(signature = (
-        quantity, inputs, tangents, *, frame=None, tip_wrench=None, gravity=None, applied_wrenches=None,
-        base_twist=None, base_acceleration=None, parameters=None, parameters_tangent=None, threads=None
+        quantity, inputs, tangents, *, frame=None, coordinates=None, rows=None, about=None, tip_wrench=None,
+        gravity=None, applied_wrenches=None, base_twist=None, base_acceleration=None, parameters=None,
+        parameters_tangent=None, threads=None
     ))]
     #[allow(clippy::too_many_arguments)] // Python's keywords
     fn jvp<'py>(
@@ -106,7 +114,10 @@ impl PyModel {
         quantity: &str,
         inputs: Vec<Bound<'py, PyAny>>,
         tangents: Vec<Option<Bound<'py, PyAny>>>,
-        frame: Option<&str>,
+        frame: Given<'_, 'py>,
+        coordinates: Given<'_, 'py>,
+        rows: Given<'_, 'py>,
+        about: Given<'_, 'py>,
         tip_wrench: Given<'_, 'py>,
         gravity: Given<'_, 'py>,
         applied_wrenches: Given<'_, 'py>,
@@ -117,16 +128,13 @@ impl PyModel {
         threads: Option<Threads>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (robot, model) = (self.robot(), &self.robot().model);
-        let query = self.query(quantity, frame)?;
-        query.check_subject(model).map_err(of_model)?;
+        let query = Query::named(quantity).map_err(of_model)?;
         let declaration = query.declaration();
-        if inputs.len() != declaration.inputs.len() {
-            return Err(wrong_count("inputs", inputs.len(), &query));
-        }
-        if tangents.len() != declaration.inputs.len() {
-            return Err(wrong_count("tangents", tangents.len(), &query));
-        }
         let given = [
+            (Slot::Frame, frame),
+            (Slot::Coordinates, coordinates),
+            (Slot::Rows, rows),
+            (Slot::About, about),
             (Slot::TipWrench, tip_wrench),
             (Slot::Gravity, gravity),
             (Slot::AppliedWrenches, applied_wrenches),
@@ -135,7 +143,16 @@ impl PyModel {
             (Slot::Parameters, parameters),
         ];
         Arguments::check(&given, &Signature::new(declaration))?;
-        let mut environment = ArrayEnvironment::new(model, &Arguments::of(given))?;
+        let (arguments, mut rows) = (Arguments::of(given), None);
+        let query = of_subject(query, robot, &arguments, &mut rows)?;
+        query.check_subject(model).map_err(of_model)?;
+        if inputs.len() != declaration.inputs.len() {
+            return Err(wrong_count("inputs", inputs.len(), &query));
+        }
+        if tangents.len() != declaration.inputs.len() {
+            return Err(wrong_count("tangents", tangents.len(), &query));
+        }
+        let mut environment = ArrayEnvironment::new(model, &arguments)?;
         let mut state = Vec::with_capacity(inputs.len());
         for (input, given) in declaration.inputs.iter().zip(&inputs) {
             let numbers = Numbers::new(input.name, given)?;

@@ -32,15 +32,30 @@ pub fn call<'py>(
         parts = given.parts_of(environment, &SIGNATURES[index])?;
         given.extend(&parts);
     }
-    let rows: Option<Vec<usize>>;
-    let mut query = Query::at(index);
+    let mut rows = None;
+    let query = of_subject(Query::at(index), robot, &given, &mut rows)?;
+    let threads = given.get(Slot::Threads).map(|threads| threads.extract()).transpose()?;
+    if let Some(found) = robot.at_one_state(model.py(), &query, &given)? {
+        return Ok(found);
+    }
+    robot.compute(model.py(), &query, &given, threads)
+}
+
+/// The query of the frame, the task or the point that was given; its rows are kept in `rows`.
+#[inline]
+pub fn of_subject<'q>(
+    mut query: Query<'q>,
+    robot: &Robot,
+    given: &Arguments,
+    rows: &'q mut Option<Vec<usize>>,
+) -> PyResult<Query<'q>> {
     match query.declaration().of {
         Of::Robot => {}
-        Of::Frame => query.subject.frame = Some(frame(robot, &given)?),
+        Of::Frame => query.subject.frame = Some(frame(robot, given)?),
         Of::Task => {
-            query.subject.frame = Some(frame(robot, &given)?);
-            query.subject.coordinates = coordinates(text(&given, Slot::Coordinates)?)?;
-            rows = given.get(Slot::Rows).map(self::rows).transpose()?;
+            query.subject.frame = Some(frame(robot, given)?);
+            query.subject.coordinates = coordinates(text(given, Slot::Coordinates)?)?;
+            *rows = given.get(Slot::Rows).map(self::rows).transpose()?;
             query.subject.rows = rows.as_deref().unwrap_or(query.subject.rows);
         }
         Of::Point => {
@@ -49,11 +64,7 @@ pub fn call<'py>(
             }
         }
     }
-    let threads = given.get(Slot::Threads).map(|threads| threads.extract()).transpose()?;
-    if let Some(found) = robot.at_one_state(model.py(), &query, &given)? {
-        return Ok(found);
-    }
-    robot.compute(model.py(), &query, &given, threads)
+    Ok(query)
 }
 
 #[inline]

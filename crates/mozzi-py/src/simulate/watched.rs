@@ -68,10 +68,15 @@ fn event<'e, 'py: 'e>(
         if let Ok(holds) = answer.extract::<bool>() {
             return Ok((if holds { 1.0 } else { -1.0 }, true));
         }
-        let number = answer.extract::<f64>().map_err(|_| {
-            PyTypeError::new_err(format!("the function of {word} answered {answer}, expected a number or a bool"))
-        });
-        Ok((number?, false))
+        match answer.extract::<f64>() {
+            Ok(number) if number.is_nan() => Err(PyValueError::new_err(format!(
+                "the function of {word} answered nan at t = {t} s, expected a number or a bool"
+            ))),
+            Ok(number) => Ok((number, false)),
+            Err(_) => Err(PyTypeError::new_err(format!(
+                "the function of {word} answered {answer}, expected a number or a bool"
+            ))),
+        }
     };
     // a bool counts where it becomes true
     let (at_start, is_bool) = answer(0.0, start)?;

@@ -35,7 +35,7 @@ pub struct Event<'a> {
     pub direction: Direction,
     /// True if the simulation ends at the event.
     pub stop: bool,
-    /// The function.
+    /// The function. NaN has no sign: next to it no zero is found.
     pub function: EventFunction<'a>,
 }
 

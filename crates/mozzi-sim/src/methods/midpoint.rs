@@ -40,8 +40,8 @@ const SHORTEST: f64 = 1.0 / 64.0;
 pub(crate) struct Midpoint {
     /// p at the end of the last step, and the time of that end.
     momentum: Option<(f64, DVector<f64>)>,
-    /// v of the last step.
-    pub velocity: Vec<f64>,
+    /// v of the last part.
+    velocity: Vec<f64>,
     workspace: Workspace,
     M: Vec<f64>,
     dM: Vec<f64>,
@@ -75,14 +75,31 @@ impl Midpoint {
         end: f64,
         driven: &mut Driven<'_, I>,
     ) -> Result<State, Error> {
+        self.step_in_parts(from, h, end, driven, |_, _, _, _| ())
+    }
+
+    /// [`step`](Self::step), with each part's start, length, v and end.
+    pub fn step_in_parts<I: Input>(
+        &mut self,
+        from: &State,
+        h: f64,
+        end: f64,
+        driven: &mut Driven<'_, I>,
+        mut part_taken: impl FnMut(&State, f64, &[f64], &State),
+    ) -> Result<State, Error> {
         let (mut state, mut length) = (from.clone(), h);
         loop {
             let part = length.min(end - state.t);
             let is_last = state.t + 1.000_001 * part >= end;
             let then = if is_last { end } else { state.t + part };
             match self.part(&state, part, then, driven) {
-                Ok(to) if is_last => return Ok(to),
-                Ok(to) => state = to,
+                Ok(to) => {
+                    part_taken(&state, part, &self.velocity, &to);
+                    if is_last {
+                        return Ok(to);
+                    }
+                    state = to;
+                }
                 Err(Error::NoConvergence { .. } | Error::Opened { .. } | Error::Jumped { .. })
                     if part > SHORTEST * h =>
                 {

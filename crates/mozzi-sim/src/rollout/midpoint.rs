@@ -6,7 +6,8 @@
 //!
 //! where the momenta p_m and p' follow from p = M(θ)θ̇ and ṗ(θ_m, v, τ): see `midpoint.rs`. A
 //! cotangent z̄ gives λ with (∂G/∂z)ᵀλ = z̄, and then x̄ = −(∂G/∂x)ᵀλ, τ̄ = −(∂G/∂τ)ᵀλ, π̄ = −(∂G/∂π)ᵀλ. The
-//! derivatives of G are those of dual numbers, 5n evaluations in O(n²), and one for each parameter.
+//! derivatives of G are those of dual numbers, 5n evaluations in O(n²), and one for each parameter. A step that was
+//! divided goes back part by part.
 
 use super::dynamics::HeldTorque;
 use super::retraction::advance_vjp;
@@ -33,9 +34,11 @@ pub struct MidpointSteps<'m> {
     method: Midpoint,
     h: f64,
     state: State,
-    /// (θ, θ̇, v) of each step, and θ̇ after it.
+    /// (θ, θ̇, v) of each part of a step; its length, and θ̇ after it.
     tape: Tape,
     ends: Tape,
+    /// The first part of each step, and the number of all parts.
+    firsts: Vec<usize>,
     workspace: Workspace<Dual>,
     /// The robot along each of its parameters; made at the first use.
     along: Vec<Model<Dual>>,
@@ -53,7 +56,8 @@ impl<'m> MidpointSteps<'m> {
             h: options.step(),
             state: State { t: 0.0, theta, dtheta, ddtheta, powers: [0.0; 3], works: [0.0; 3] },
             tape: Tape::new(nq, n),
-            ends: Tape::new(0, n),
+            ends: Tape::new(1, n),
+            firsts: vec![0],
             workspace: Workspace::new(model),
             along: Vec::new(),
         }
@@ -80,33 +84,49 @@ impl Stepper for MidpointSteps<'_> {
     fn clear(&mut self) {
         self.tape.clear();
         self.ends.clear();
+        self.firsts.truncate(1);
     }
 
     fn step(&mut self, k: usize, tau: &[f64], is_taped: bool, _: bool) -> Result<(), Error> {
-        let MidpointSteps { driven, method, h, state, .. } = self;
+        let MidpointSteps { driven, method, h, state, tape, ends, firsts, .. } = self;
         driven.equation.input.0.copy_from_slice(tau);
         driven.at_step(k + 1, *h);
         state.t = k as f64 * *h;
         driven.complete(state)?; // θ̈ under this step's torques, from which the iteration starts
-        let end = method.step(state, *h, (k + 1) as f64 * *h, driven)?;
+        let mut parts = firsts[firsts.len() - 1];
+        let end = method.step_in_parts(state, *h, (k + 1) as f64 * *h, driven, |from, h, v, to| {
+            if is_taped {
+                tape.push(&from.theta, &from.dtheta, v);
+                ends.push(&[h], &to.dtheta, &to.dtheta);
+                parts += 1;
+            }
+        })?;
         if is_taped {
-            self.tape.push(&state.theta, &state.dtheta, &method.velocity);
-            self.ends.push(&[], &end.dtheta, &end.dtheta);
+            firsts.push(parts);
         }
         self.state = end;
         Ok(())
     }
 
     fn start(&self, at: usize) -> [&[f64]; 2] {
-        let [theta, dtheta, _] = self.tape.stage(at);
+        let [theta, dtheta, _] = self.tape.stage(self.firsts[at]);
         [theta, dtheta]
     }
 
     fn step_back(&mut self, _: usize, at: usize, tau: &[f64], to: &mut Cotangents) -> Result<(), Error> {
-        let MidpointSteps { driven, h, tape, ends, workspace, along, .. } = self;
+        to.tau.fill(0.0);
+        (self.firsts[at]..self.firsts[at + 1]).rev().try_for_each(|part| self.part_back(part, tau, to))
+    }
+}
+
+impl MidpointSteps<'_> {
+    /// Replaces the cotangents of a part's end by those of its start; adds to those of τ.
+    fn part_back(&mut self, part: usize, tau: &[f64], to: &mut Cotangents) -> Result<(), Error> {
+        let MidpointSteps { driven, tape, ends, workspace, along, .. } = self;
         let (model, equation, n, p) = (driven.model, &driven.equation, tau.len(), to.parameters.len());
         let options = Options { gravity: Some(equation.gravity), ..equation.options };
-        let ([theta, dtheta, v], [_, end, _]) = (tape.stage(at), ends.stage(at));
+        let ([theta, dtheta, v], [h, end, _]) = (tape.stage(part), ends.stage(part));
+        let h = h[0];
         let (zero, still) = (vec![0.0; n], model.map(Dual::constant));
         let mut along_unit = |which: usize, j: usize| {
             let mut e = zero.clone();
@@ -118,7 +138,7 @@ impl Stepper for MidpointSteps<'_> {
                 &still,
                 &seed_direction(model, theta, by(0)),
                 step.each_ref().map(Vec::as_slice),
-                (*h, &options),
+                (h, &options),
                 workspace,
             )
         };
@@ -126,10 +146,10 @@ impl Stepper for MidpointSteps<'_> {
         let [by_theta, by_dtheta, by_v, by_end, by_tau] = [0, 1, 2, 3, 4].map(&mut columns);
 
         let mut z = vec![0.0; 2 * n];
-        let way: Vec<f64> = v.iter().map(|v| v * *h).collect();
+        let way: Vec<f64> = v.iter().map(|v| v * h).collect();
         let (to_v, to_end) = z.split_at_mut(n);
         advance_vjp(model.configuration_space(), &way, &mut to.theta, to_v);
-        to_v.iter_mut().for_each(|x| *x *= *h);
+        to_v.iter_mut().for_each(|x| *x *= h);
         to_end.copy_from_slice(&to.dtheta);
         let G = DMatrix::from_columns(&[by_v, by_end].concat());
         let Some(lambda) = G.transpose().lu().solve(&DVector::from_vec(z)) else {
@@ -143,7 +163,7 @@ impl Stepper for MidpointSteps<'_> {
         for j in 0..n {
             to.theta[j] -= by_theta[j].dot(&lambda);
             to.dtheta[j] = -by_dtheta[j].dot(&lambda);
-            to.tau[j] = -by_tau[j].dot(&lambda);
+            to.tau[j] -= by_tau[j].dot(&lambda);
         }
         if along.len() < p {
             *along = varied(model)?;
@@ -151,7 +171,7 @@ impl Stepper for MidpointSteps<'_> {
         let step = [dtheta, v, end, tau].map(Dual::constants);
         for (sum, model) in to.parameters.iter_mut().zip(&*along) {
             let step = step.each_ref().map(Vec::as_slice);
-            *sum -= gap(model, &Dual::constants(theta), step, (*h, &options), workspace).dot(&lambda);
+            *sum -= gap(model, &Dual::constants(theta), step, (h, &options), workspace).dot(&lambda);
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ extern crate std;
 use super::Rollout;
 use super::midpoint::equations;
 use super::tests::{Case, SMOOTH, case, dot, models};
+use crate::tests::robots::double_pendulum;
 use crate::{Method, Options};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -52,7 +53,7 @@ fn loss(model: &Model, case: &Case, here: &[Vec<f64>; 2]) -> f64 {
 }
 
 /// By differences of fourth order: 8 (L(e) − L(−e)) − (L(2e) − L(−2e)) over 12e.
-fn slope(loss: impl Fn(f64) -> f64) -> f64 {
+fn slope(mut loss: impl FnMut(f64) -> f64) -> f64 {
     let e = 1e-4;
     (8.0 * (loss(e) - loss(-e)) - (loss(2.0 * e) - loss(-2.0 * e))) / (12.0 * e)
 }
@@ -100,4 +101,17 @@ fn checkpoints_change_rounding_alone() {
         assert!(near(&parts.theta, &whole.theta) && near(&parts.tau, &whole.tau));
         assert!(near(&parts.dtheta, &whole.dtheta) && near(&parts.parameters, &whole.parameters));
     }
+}
+
+/// At this speed the whole step's iteration does not converge.
+#[test]
+fn gradients_pass_through_steps_that_were_halved() {
+    let (model, h) = (double_pendulum(), 0.1);
+    let (theta, tau, zeros) = ([1.0, 0.5], [0.0; 4], [0.0; 6]);
+    let mut rollout = Rollout::new(&model, h, Method::Midpoint).expect("a fixed step");
+    let mut end = |speed: f64| rollout.states(&theta, &[speed, -10.0], &tau).expect("regular").dtheta[4];
+    let expected = slope(|e| end(10.0 + e));
+    let mut rollout = Rollout::new(&model, h, Method::Midpoint).expect("a fixed step");
+    let found = rollout.vjp(&theta, &[10.0, -10.0], &tau, &zeros, &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]).expect("regular");
+    assert!((found.dtheta[0] - expected).abs() < 1e-6 * expected.abs().max(1.0), "{} {expected}", found.dtheta[0]);
 }

@@ -4,6 +4,7 @@ use super::inertial::shortest;
 use super::{Proposal, Robot, twin};
 use crate::edit::element::{Editor, Tag};
 use crate::text::number::numbers;
+use crate::text::version::Version;
 
 pub(super) fn proposals(robot: &Robot<'_>) -> Vec<Proposal> {
     let joints: Vec<Tag<'_>> = robot.root.children().filter(|tag| tag.name() == "joint").collect();
@@ -20,14 +21,18 @@ fn number(joint: Tag<'_>, name: &str) -> Option<f64> {
 }
 
 fn reversed(robot: &Robot<'_>, joint: Tag<'_>) -> Option<Proposal> {
-    let (lower, upper) = (number(joint, "lower")?, number(joint, "upper")?);
+    let limit = joint.child("limit")?;
+    let version = robot.root.attribute("version").and_then(Version::parse).unwrap_or_default();
+    let default = Some("0").filter(|_| version < Version::WITH_ACCELERATION);
+    let [low, high] = ["lower", "upper"].map(|name| limit.attribute(name).or(default));
+    let [lower, upper] = [low, high].map(|text| numbers::<1>(text?).ok().map(|[x]| x));
+    let (lower, upper) = (lower?, upper?);
     if lower <= upper || !matches!(joint.attribute("type"), Some("revolute" | "prismatic")) {
         return None;
     }
-    let limit = joint.child("limit")?;
     let mut editor = Editor::new(joint.text);
-    editor.set(limit, "lower", limit.attribute("upper"));
-    editor.set(limit, "upper", limit.attribute("lower"));
+    editor.set(limit, "lower", high);
+    editor.set(limit, "upper", low);
     let mut proposal = robot.proposal("reversed_limit", joint, &editor);
     let [low, high] = [lower, upper].map(shortest);
     proposal.change = format!("lower {low} → {high}, upper {high} → {low}");

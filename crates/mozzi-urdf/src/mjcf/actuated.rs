@@ -86,14 +86,21 @@ impl Actuated {
     }
 }
 
-/// The robot with these parts of its links' inertias, and no others.
+/// The robot with these parts of its links' inertias, and no others. A description has no negative mass; the
+/// parameters have, as the difference of two robots.
 fn compensated(model: &Model, parts: &[(String, f64)]) -> Result<Model, Error> {
-    let mut robot = model.description().clone();
-    for link in &mut robot.links {
-        let part = parts.iter().find(|(name, _)| *name == link.name).map_or(0.0, |(_, part)| *part);
-        link.inertia = SpatialInertia::from_parameters(link.inertia.to_parameters().map(|x| part * x));
-    }
-    robot.build()?.with_gravity(model.gravity().0)
+    let of_sign = |sign: f64| {
+        let mut robot = model.description().clone();
+        for link in &mut robot.links {
+            let part =
+                parts.iter().find(|(name, _)| *name == link.name).map_or(0.0, |(_, part)| (sign * part).max(0.0));
+            link.inertia = SpatialInertia::from_parameters(link.inertia.to_parameters().map(|x| part * x));
+        }
+        robot.build()?.with_gravity(model.gravity().0)
+    };
+    let [up, down] = [of_sign(1.0)?, of_sign(-1.0)?];
+    let parameters: Vec<f64> = up.parameters().iter().zip(down.parameters()).map(|(up, down)| up - down).collect();
+    Ok(up.with_parameters(&parameters))
 }
 
 impl Drive {

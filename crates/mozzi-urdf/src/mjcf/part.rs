@@ -249,20 +249,22 @@ impl Writer<'_> {
     /// The changed pieces of the text, each on its own line, in a root element.
     fn written(&mut self, pieces: &[Range<usize>], first: &str) -> String {
         self.edits.sort_by_key(|(range, _)| (range.start, range.end));
+        let breaks: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         let (mut written, mut line) = (format!("<mujoco>{first}"), 0);
         for piece in pieces {
-            let before = self.text[..piece.start].matches('\n').count();
+            let before = breaks.partition_point(|at| *at < piece.start);
+            let start = written.len();
             written.push_str(&"\n".repeat(before.saturating_sub(line)));
             let mut at = piece.start;
-            for (range, new) in
-                self.edits.iter().filter(|(range, _)| piece.start <= range.start && range.end <= piece.end)
-            {
+            let from = self.edits.partition_point(|(range, _)| range.start < piece.start);
+            let within = self.edits[from..].iter().take_while(|(range, _)| range.start <= piece.end);
+            for (range, new) in within.filter(|(range, _)| range.end <= piece.end) {
                 written.push_str(&self.text[at..range.start]);
                 written.push_str(new);
                 at = range.end;
             }
             written.push_str(&self.text[at..piece.end]);
-            line = written.matches('\n').count();
+            line += written[start..].matches('\n').count();
         }
         written.push_str("</mujoco>");
         written

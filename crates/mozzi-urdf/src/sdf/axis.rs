@@ -8,11 +8,9 @@ use crate::report::places::Place;
 use crate::text::context::Context;
 use crate::text::element::{Element, Value};
 use mozzi::Vec3;
+use mozzi::model::UNLIMITED;
 use mozzi::model::description::Limits;
 use std::ops::Range;
-
-/// SDFormat's word for no limit before it had infinity.
-const UNLIMITED: f64 = 1e16;
 
 /// Which frame the direction is given in.
 #[derive(Clone)]

@@ -3,6 +3,7 @@
 use super::base::{base_link, has_world, start_pose};
 use crate::urdf::write::constraint_losses;
 use crate::written::names_of;
+use mozzi::model::UNLIMITED;
 use mozzi::model::description::{FreeJoint, JointKind};
 use mozzi::{Base, Description};
 
@@ -15,7 +16,7 @@ pub(super) fn of(d: &Description) -> Vec<String> {
         if let Some(limit) = limits.acceleration.filter(|_| moves) {
             losses.push(format!("joint `{name}`: acceleration limit {limit:?}"));
         }
-        let is_far = |x: &f64| x.abs() >= 1e16 && x.abs() < f64::MAX;
+        let is_far = |x: &f64| x.abs() >= UNLIMITED && x.abs() < f64::MAX;
         if let Some(limits) = limits.position.filter(|limits| is_one && limits.iter().any(is_far)) {
             losses.push(format!("joint `{name}`: the limits {limits:?}: from 1e16 on they mean none"));
         }

@@ -99,6 +99,15 @@ fn published_faults_are_repaired() {
         let list = found(&arm(SOUND, limit));
         assert_eq!(list.iter().map(|one| one.code).collect::<Vec<_>>(), [code], "{list:#?}");
         assert_eq!(apply(&arm(SOUND, limit), &list), arm(SOUND, LIMIT));
+    }
+    // a bound that is missing is 0
+    for (limit, change) in [
+        (r#"upper="-1.5" effort="30""#, "lower 0 → -1.5, upper -1.5 → 0"),
+        (r#"lower="1.5" effort="30""#, "lower 1.5 → 0, upper 0 → 1.5"),
+    ] {
+        let (text, list) = (arm(SOUND, limit), found(&arm(SOUND, limit)));
+        assert!(list.len() == 1 && list[0].change == change, "{list:#?}");
+        assert!(found(&apply(&text, &list)).is_empty());
         assert_eq!(list[0].effect, "M does not change");
     }
 }

@@ -1,6 +1,6 @@
 //! Joint limits.
 
-use super::description::Source;
+use super::description::{Limits, Source};
 use super::{Freedom, Model, Place};
 use crate::lie::SO3;
 use crate::linalg::Vec3;
@@ -19,14 +19,29 @@ pub struct Bounds {
     pub turns: Vec<bool>,
 }
 
+/// From this size on, a limit of position means none, as in SDFormat: files have no other number for a side without
+/// limit.
+pub const UNLIMITED: f64 = 1e16;
+
+impl Limits {
+    /// Lowest and highest position, −∞ and ∞ if there is none.
+    pub fn bounds(&self) -> [f64; 2] {
+        let [low, high] = self.position.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let low = if low > -UNLIMITED { low } else { f64::NEG_INFINITY };
+        [low, if high < UNLIMITED { high } else { f64::INFINITY }]
+    }
+}
+
 impl Bounds {
     /// The limits of a robot's joints.
     pub fn of(model: &Model) -> Self {
         let free = [f64::NEG_INFINITY, f64::INFINITY];
         let mut joints = vec![free; model.joint_names().len()];
         for (joint, Source { joint: j, ratio, offset }) in model.moving_joints().zip(model.sources()) {
-            let (Some(limits), true) = (joint.limits.position, ratio != 0.0) else { continue };
-            let [a, b] = limits.map(|x| (x - offset) / ratio);
+            if ratio == 0.0 {
+                continue;
+            }
+            let [a, b] = joint.limits.bounds().map(|x| (x - offset) / ratio);
             let [low, high] = joints[j];
             let both = [low.max(a.min(b)), high.min(a.max(b))];
             // if the source joint's limits keep a mimic joint outside its own, the mimic joint's limits are ignored

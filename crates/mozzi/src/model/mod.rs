@@ -40,7 +40,7 @@ use alloc::vec::Vec;
 
 pub(crate) use arguments::{check_length, check_unit};
 pub use base::Base;
-pub use bounds::Bounds;
+pub use bounds::{Bounds, UNLIMITED};
 pub use configuration::{ConfigurationSpace, difference, integrate, rate_of_logarithm, seed_direction};
 pub use contact_point::{ContactPoint, Support};
 pub use description::Description;

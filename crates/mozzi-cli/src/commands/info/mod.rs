@@ -182,6 +182,12 @@ fn shown(joint: &Joint, x: f64) -> f64 {
     if angles::are_degrees() && angles::turns(joint.kind) { x.to_degrees() } else { x }
 }
 
+/// The lowest (0) or highest (1) position.
+fn bound(joint: &Joint, side: usize) -> Option<f64> {
+    let x = joint.limits.bounds()[side];
+    x.is_finite().then(|| shown(joint, x))
+}
+
 fn joints(model: &Model) -> Vec<String> {
     let list: Vec<&Joint> = model.moving_joints().collect();
     let mut j = 0;
@@ -207,8 +213,8 @@ fn joints(model: &Model) -> Vec<String> {
         ("joint", text(&|joint| joint.name.clone())),
         ("type", text(&|joint| kind(joint).to_string())),
         ("moves", text(&|joint| joint.child.clone())),
-        ("lowest", of(|joint| joint.limits.position.map(|[low, _]| shown(joint, low)))),
-        ("highest", of(|joint| joint.limits.position.map(|[_, high]| shown(joint, high)))),
+        ("lowest", of(|joint| bound(joint, 0))),
+        ("highest", of(|joint| bound(joint, 1))),
         ("speed", of(|joint| joint.limits.velocity.map(|speed| shown(joint, speed)))),
         ("effort", of(|joint| joint.limits.effort)),
         ("damping", of(|joint| (joint.damping != 0.0).then_some(joint.damping))),
