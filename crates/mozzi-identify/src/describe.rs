@@ -85,7 +85,8 @@ pub fn describe(
                     false => *field,
                 };
                 if kind == "stiffness" && old > 0.0 && new > 0.0 {
-                    joint.spring_reference = offset + (joint.spring_reference - offset) * old / new; // the preload stays
+                    let rest = &mut joint.spring_reference;
+                    *rest = offset + (*rest - offset) * old / new; // the preload stays
                 }
             }
         }

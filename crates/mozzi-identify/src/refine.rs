@@ -61,10 +61,10 @@ impl<'s> Window<'s> {
     }
 }
 
-/// Minimizes, on the part of the logs that was fitted, the cost of the equations and the prior plus the squared errors of rollouts, relative to their size at the
-/// start: the forces that were measured drive the robot from a measured state, and its motion is compared with the
-/// measured one, where no force is saturated. Gradients are those of the discrete steps, by the adjoint; the links stay
-/// bodies that can exist.
+/// Minimizes, on the fitted part of the logs, the cost of the equations and the prior plus the squared errors of
+/// rollouts, relative to their size at the start: the forces that were measured drive the robot from a measured state,
+/// and its motion is compared with the measured one, where no force is saturated. Gradients are those of the discrete
+/// steps, by the adjoint; the links stay bodies that can exist.
 ///
 /// # Errors
 /// [`Error::BadOption`] for a floating base or a ball, a payload, Stribeck friction, drive gains, or a window longer
@@ -98,10 +98,7 @@ pub fn refine(
         let length = (options.window * samples.rate).round() as usize;
         let is_whole = |first: usize| {
             let jumps = samples.t[first + length] - samples.t[first] > 1.01 * length as f64 / samples.rate;
-            !jumps
-                && samples.is_valid[first * model.n()..(first + length + 1) * model.n()]
-                    .iter()
-                    .all(|is_valid| *is_valid)
+            !jumps && !samples.is_valid[first * model.n()..(first + length + 1) * model.n()].contains(&false)
         };
         let fitted = found.tenths() * samples.count() / PARTS;
         let starts = (0..fitted.saturating_sub(length)).step_by(length.max(1));
