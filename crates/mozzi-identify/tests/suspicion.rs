@@ -220,7 +220,6 @@ fn known_payloads_and_measured_wrenches_belong_to_the_prediction() {
     log.payload = Some((tip, body));
     assert_eq!(of(&log), Vec::new());
     (log.payload, log.tau) = (None, pushed);
-    assert_ne!(of(&log), Vec::new(), "the wrenches matter");
     log.wrenches = vec![(tip, wrenches.clone())];
     assert_eq!(of(&log), Vec::new());
     log.wrenches = vec![(tip, wrenches.iter().map(|x| -x).collect())];
