@@ -31,7 +31,7 @@ pub struct Choice {
     pub stribeck: Option<f64>,
     /// A constant force for each joint, of sensors and of cables.
     pub offset: bool,
-    /// Stiffness of springs with their rest at 0; their preload is in the offset.
+    /// Stiffness of springs. Their preload is the file's; what comes beyond it is in the offset.
     pub stiffness: bool,
     /// The ten parameters of a payload fixed to this frame.
     pub payload: Option<FrameId>,

@@ -5,7 +5,7 @@ use crate::rotors::{rate, rates};
 use crate::signals::Samples;
 use crate::{Error, payload::Carried};
 use mozzi::quantities::{Query, Regressor, TipForces};
-use mozzi::{Environment, FrameId, Model, Wrench, fast};
+use mozzi::{Environment, Model, fast};
 
 /// The parameter of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,11 +121,12 @@ impl<'m> Columns<'m> {
                 false => fixed.push((k, values[k])),
             }
         }
-        let kinds: [(bool, KindOf); 4] = [
+        let kinds: [(bool, KindOf); 5] = [
             (choice.armature, Kind::Armature),
             (choice.viscous, Kind::Viscous),
             (choice.coulomb, Kind::Coulomb),
             (choice.stiffness, Kind::Stiffness),
+            (false, Kind::Stiffness), // the preload
         ];
         for (entry, (is_chosen, kind)) in kinds.into_iter().enumerate() {
             for place in 0..places.len() {
@@ -159,9 +160,6 @@ impl<'m> Columns<'m> {
         let rows: Vec<&str> = model.velocity_names().collect();
         if choice.offset {
             (base..model.n()).for_each(|j| add(format!("{}.offset", rows[j]), Kind::Offset(j), 0.0));
-        } else {
-            // preloads, which an offset contains
-            fixed.extend((0..places.len()).map(|place| first + OF_JOINT * place + 4).map(|k| (k, values[k])));
         }
         if choice.is_apparent() && !choice.armature {
             let joints = model.joint_names().zip(0..);
@@ -257,8 +255,8 @@ pub struct Equations<'c, 'm> {
     query: Query<'static>,
     Y: Vec<f64>,
     JtF: Vec<f64>,
-    applied: Vec<(FrameId, Wrench)>,
-    known: Option<(Carried, [f64; 10])>,
+    /// Entries of the parameters that are known: those that are not estimated, and the log's payload.
+    known: Vec<(usize, f64)>,
 }
 
 impl<'c, 'm> Equations<'c, 'm> {
@@ -268,17 +266,19 @@ impl<'c, 'm> Equations<'c, 'm> {
     /// [`Error::Model`] if a payload's frame belongs to another model.
     pub fn new(columns: &'c Columns<'m>, samples: &Samples) -> Result<Self, Error> {
         let model = columns.model;
-        let known = samples
-            .payload
-            .map(|(frame, inertia)| Carried::new(model, frame).map(|carried| (carried, inertia.to_parameters())));
+        let mut known = columns.fixed.clone();
+        if let Some((frame, inertia)) = samples.payload {
+            let mut payload = vec![0.0; model.parameter_count()];
+            Carried::new(model, frame)?.add(&mut payload, &inertia.to_parameters());
+            known.extend(payload.into_iter().enumerate().filter(|(_, value)| *value != 0.0));
+        }
         Ok(Equations {
             columns,
             workspace: fast::Workspace::new(model),
             query: Query::from(Regressor),
             Y: vec![0.0; model.n() * model.parameter_count()],
             JtF: vec![0.0; model.n()],
-            applied: Vec::new(),
-            known: known.transpose()?,
+            known,
         })
     }
 
@@ -290,18 +290,14 @@ impl<'c, 'm> Equations<'c, 'm> {
         let row = k * n..(k + 1) * n;
         let (dtheta, ddtheta) = (&samples.dtheta[row.clone()], &samples.ddtheta[row.clone()]);
         let tau = &samples.tau[row];
-        self.applied.clear();
-        self.applied.extend(samples.wrenches.iter().map(|(frame, table)| {
-            let w: [f64; 6] = core::array::from_fn(|i| table[6 * k + i]);
-            (*frame, Wrench::from_array(w))
-        }));
         let all = n + self.columns.rotors.len();
         let of_row = |table: &Option<Vec<f64>>| table.as_ref().map(|table| table[k * all..(k + 1) * all].to_vec());
         let friction = [of_row(&samples.coulomb), of_row(&samples.stribeck)];
         self.with_friction([theta, dtheta, ddtheta, tau], friction, A, b);
-        if !self.applied.is_empty() {
+        if !samples.wrenches.is_empty() {
             // JᵀF depends on no parameter
-            let environment = Environment { applied: &self.applied, ..Environment::with_gravity(mozzi::Vec3::zero()) };
+            let environment =
+                Environment { applied: &samples.applied(k), ..Environment::with_gravity(mozzi::Vec3::zero()) };
             let query = Query::from(TipForces);
             fast::evaluate(&query, model, &[theta], &environment, &mut self.workspace, &mut [&mut self.JtF]);
             b.iter_mut().zip(&self.JtF).for_each(|(b, JtF)| *b -= JtF);
@@ -367,16 +363,11 @@ impl<'c, 'm> Equations<'c, 'm> {
             }
         }
         for j in 0..n {
-            b[j] -= columns.fixed.iter().map(|&(k, value)| Y[j * p + k] * value).sum::<f64>();
+            b[j] -= self.known.iter().map(|&(k, value)| Y[j * p + k] * value).sum::<f64>();
         }
         for (rows, &mu) in columns.rows.iter().zip(&columns.fixed_coulomb) {
             if mu != 0.0 {
                 rows.clone().for_each(|j| b[j] -= mu * coulomb[j]);
-            }
-        }
-        if let Some((carried, parameters)) = &self.known {
-            for j in 0..n {
-                b[j] -= (0..10).map(|k| carried.column(&Y[j * p..][..p], k) * parameters[k]).sum::<f64>();
             }
         }
     }

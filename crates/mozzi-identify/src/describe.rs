@@ -60,17 +60,17 @@ pub fn describe(
     }
     let joints: Vec<String> = model.joint_names().map(str::to_string).collect();
     for name in joints {
-        let followers: Vec<(usize, f64)> = robot
+        let followers: Vec<(usize, [f64; 2])> = robot
             .joints
             .iter()
             .enumerate()
             .filter_map(|(k, joint)| Some((k, original.source_of(&joint.name)?)))
             .filter(|(_, source)| original.joints[source.joint].name == name)
-            .map(|(k, source)| (k, source.ratio))
+            .map(|(k, source)| (k, [source.ratio, source.offset]))
             .collect();
         for (kind, power) in [("armature", 2), ("damping", 2), ("friction", 1), ("stiffness", 2)] {
             let Some((old, new)) = value(format!("{name}.{kind}")).filter(|(old, new)| old != new) else { continue };
-            for &(k, ratio) in &followers {
+            for &(k, [ratio, offset]) in &followers {
                 let joint = &mut robot.joints[k];
                 let field = match kind {
                     "armature" => &mut joint.armature,
@@ -84,6 +84,10 @@ pub fn describe(
                     false if joint.name == name => new / ratio.abs().powi(power),
                     false => *field,
                 };
+                if kind == "stiffness" && old > 0.0 && new > 0.0 {
+                    let rest = &mut joint.spring_reference;
+                    *rest = offset + (*rest - offset) * old / new; // the preload stays
+                }
             }
         }
     }

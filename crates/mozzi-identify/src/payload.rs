@@ -1,7 +1,19 @@
 //! The columns of a body that is fixed to a frame.
 
 use crate::Error;
+use crate::signals::Samples;
 use mozzi::{FrameId, Model, SpatialInertia};
+
+/// The robot of a log: a robot with these parameters and the payload that is known.
+///
+/// # Errors
+/// [`Error::Model`] if the payload's frame belongs to another model.
+pub(crate) fn robot_of(model: &Model, mut parameters: Vec<f64>, samples: &Samples) -> Result<Model, Error> {
+    if let Some((frame, inertia)) = samples.payload {
+        Carried::new(model, frame)?.add(&mut parameters, &inertia.to_parameters());
+    }
+    Ok(model.with_parameters(&parameters))
+}
 
 /// The parameters of a body at a frame, as combinations of those of the link that carries it.
 #[derive(Clone, Debug)]

@@ -3,10 +3,10 @@
 
 use crate::Error;
 use crate::columns::{Columns, Kind};
-use crate::payload::Carried;
+use crate::payload::{Carried, robot_of};
 use crate::signals::Samples;
 use mozzi::quantities::{InverseDynamics, Query};
-use mozzi::{Environment, Model, Wrench, fast};
+use mozzi::{Environment, Model, fast};
 
 /// The robot's [`parameters`](Model::parameters) with the unknowns in their places. A payload is added to the link that
 /// carries it; offsets, Stribeck friction, apparent inertia and drive gains are not among them.
@@ -61,9 +61,6 @@ pub(crate) fn predict_some(
     let model = columns.model;
     let (n, nq) = (model.n(), model.nq());
     let mut pi = parameters(columns, x)?;
-    if let Some((frame, inertia)) = samples.payload {
-        Carried::new(model, frame)?.add(&mut pi, &inertia.to_parameters());
-    }
     // Coulomb friction is smooth here
     let names = model.parameter_names();
     let places = model.places();
@@ -73,10 +70,6 @@ pub(crate) fn predict_some(
             place.velocities().for_each(|j| mu[j] = pi[k]);
             pi[k] = 0.0;
         }
-    }
-    if columns.choice.offset {
-        // an offset contains the spring's preload
-        names.iter().zip(&mut pi).filter(|(name, _)| name.ends_with(".preload")).for_each(|(_, value)| *value = 0.0);
     }
     let mut of_rotors = vec![[0.0; 2]; columns.rotors.len()];
     let (mut offset, mut stribeck, mut gain) = (vec![0.0; n], vec![0.0; n], vec![1.0; n]);
@@ -91,22 +84,14 @@ pub(crate) fn predict_some(
             _ => {}
         }
     }
-    let robot = model.with_parameters(&pi);
+    let robot = robot_of(model, pi, samples)?;
     let shape = columns.choice.shape();
     let (query, mut workspace) = (Query::from(InverseDynamics), fast::Workspace::new(&robot));
     let mut all = vec![0.0; range.len() * n];
-    let mut applied = Vec::new();
     for (k, tau) in range.zip(all.chunks_mut(n)) {
         let (theta, row) = (&samples.theta[k * nq..][..nq], k * n..(k + 1) * n);
         let (dtheta, ddtheta) = (&samples.dtheta[row.clone()], &samples.ddtheta[row]);
-        applied.clear();
-        applied.extend(
-            samples
-                .wrenches
-                .iter()
-                .map(|(frame, table)| (*frame, Wrench::from_array(core::array::from_fn(|i| table[6 * k + i])))),
-        );
-        let environment = Environment { applied: &applied, ..robot.environment() };
+        let environment = Environment { applied: &samples.applied(k), ..robot.environment() };
         fast::evaluate(&query, &robot, &[theta, dtheta, ddtheta], &environment, &mut workspace, &mut [tau]);
         let of = |given: &Option<Vec<f64>>, entry: usize, of_one: f64| {
             given.as_ref().map_or(of_one, |table| table[k * (n + columns.rotors.len()) + entry])

@@ -1,8 +1,10 @@
 //! Refinement on rollouts: the parameters that predict motion, not only forces.
 
 use crate::columns::Kind;
+use crate::compress::PARTS;
 use crate::estimate::consistent::Newton;
 use crate::excite::lbfgs;
+use crate::payload::robot_of;
 use crate::predict::parameters;
 use crate::signals::Samples;
 use crate::{Error, Identification};
@@ -43,11 +45,26 @@ pub struct Refinement {
 struct Window<'s> {
     samples: &'s Samples,
     first: usize,
+    /// The measured forces without those of measured wrenches, by rows.
+    tau: Vec<f64>,
 }
 
-/// Minimizes the cost of the equations and the prior plus the squared errors of rollouts, relative to their size at the
-/// start: the forces that were measured drive the robot from a measured state, and its motion is compared with the
-/// measured one. Gradients are those of the discrete steps, by the adjoint; the links stay bodies that can exist.
+impl<'s> Window<'s> {
+    fn new(model: &Model, samples: &'s Samples, first: usize, length: usize) -> Result<Self, Error> {
+        let (n, mut tau) = (model.n(), Vec::new());
+        for k in first..=first + length {
+            let row = k * n..(k + 1) * n;
+            let JtF = model.tip_forces(&samples.theta[row.clone()], &samples.applied(k))?;
+            tau.extend(samples.tau[row].iter().zip(&JtF).map(|(tau, JtF)| tau - JtF));
+        }
+        Ok(Window { samples, first, tau })
+    }
+}
+
+/// Minimizes, on the fitted part of the logs, the cost of the equations and the prior plus the squared errors of
+/// rollouts, relative to their size at the start: the forces that were measured drive the robot from a measured state,
+/// and its motion is compared with the measured one, where no force is saturated. Gradients are those of the discrete
+/// steps, by the adjoint; the links stay bodies that can exist.
 ///
 /// # Errors
 /// [`Error::BadOption`] for a floating base or a ball, a payload, Stribeck friction, drive gains, or a window longer
@@ -79,15 +96,22 @@ pub fn refine(
     let mut windows = Vec::new();
     for samples in &found.samples {
         let length = (options.window * samples.rate).round() as usize;
-        let jumps = |first: usize| samples.t[first + length] - samples.t[first] > 1.01 * length as f64 / samples.rate;
-        let starts = (0..samples.count().saturating_sub(length + 1)).step_by(length.max(1));
-        windows.extend(starts.filter(|&first| !jumps(first)).map(|first| Window { samples, first }));
+        let is_whole = |first: usize| {
+            let jumps = samples.t[first + length] - samples.t[first] > 1.01 * length as f64 / samples.rate;
+            !jumps && !samples.is_valid[first * model.n()..(first + length + 1) * model.n()].contains(&false)
+        };
+        let fitted = found.tenths() * samples.count() / PARTS;
+        let starts = (0..fitted.saturating_sub(length)).step_by(length.max(1));
+        windows.extend(starts.filter(|&first| is_whole(first)).map(|first| (samples, first, length)));
     }
     if windows.is_empty() || options.windows == 0 {
-        return Err(wrong(&format!("windows of {} s", options.window), "shorter than the logs"));
+        let expected = "shorter than the fitted parts of the logs without gaps and saturated forces";
+        return Err(wrong(&format!("windows of {} s", options.window), expected));
     }
     let step = windows.len().div_ceil(options.windows);
-    let windows: Vec<Window> = windows.into_iter().step_by(step).collect();
+    let windows = windows.into_iter().step_by(step);
+    let windows = windows.map(|(samples, first, length)| Window::new(model, samples, first, length));
+    let windows: Vec<Window> = windows.collect::<Result<_, _>>()?;
 
     let data = found.evidence().weighted(&found.estimates.least_squares.sigma);
     let problem = found.setup.problem.of_robot();
@@ -95,7 +119,7 @@ pub fn refine(
     let gamma = found.setup.problem.gamma;
     let singular = || Error::NotExciting { reason: "the equations are singular".into() };
     let mut inside = found.estimates.consistent.x.clone();
-    found.setup.problem.split.iter().for_each(|&k| inside[k] = inside[k].max(1e-6));
+    problem.positive.iter().for_each(|&k| inside[k] = inside[k].max(1e-6));
     let start = newton.whitened(&inside).ok_or_else(singular)?;
     let S = newton.directions(&start, gamma)?;
     let mut rollouts = Rollouts { found, windows, window: options.window, sizes: None };
@@ -174,7 +198,6 @@ impl Rollouts<'_, '_> {
         let columns = &self.found.setup.columns;
         let n = columns.model.n();
         let pi = parameters(columns, x)?;
-        let robot = columns.model.with_parameters(&pi);
         let mut offset = vec![0.0; n];
         for (unknown, &value) in columns.unknowns.iter().zip(x) {
             if let Kind::Offset(j) = unknown.kind {
@@ -186,7 +209,8 @@ impl Rollouts<'_, '_> {
         let (mut loss, mut by_pi, mut by_offset) = (0.0, vec![0.0; pi.len()], vec![0.0; n]);
         let mut squares = [vec![0.0; n], vec![0.0; n]];
         let mut count = 0.0;
-        for Window { samples, first } in &self.windows {
+        for Window { samples, first, tau: measured } in &self.windows {
+            let robot = robot_of(columns.model, pi.clone(), samples)?;
             let length = (self.window * samples.rate).round() as usize;
             let steps = self.steps(&robot, samples.rate)?;
             let mut rollout = Rollout::new(&robot, 1.0 / (samples.rate * steps as f64), Method::RungeKutta4)?
@@ -197,9 +221,11 @@ impl Rollouts<'_, '_> {
             for k in 0..length {
                 for s in 0..steps {
                     let share = (s as f64 + 0.5) / steps as f64; // the middle of the step
-                    tau.extend((0..n).map(|j| {
-                        at(&samples.tau, k, j) * (1.0 - share) + at(&samples.tau, k + 1, j) * share - offset[j]
-                    }));
+                    tau.extend(
+                        (0..n).map(|j| {
+                            measured[k * n + j] * (1.0 - share) + measured[(k + 1) * n + j] * share - offset[j]
+                        }),
+                    );
                 }
             }
             let row = first * n..(first + 1) * n;
@@ -258,13 +284,14 @@ mod tests {
         let table = |order: i32| (0..400).flat_map(|k| (0..2).map(move |j| wave(k, j, order))).collect::<Vec<f64>>();
         let mut log = Log { name: "waves".into(), t: (0..400).map(|k| 0.01 * k as f64).collect(), ..Log::default() };
         (log.theta, log.dtheta, log.tau) = (table(0), Some(table(1)), table(2));
-        let found = identify(&model, &[log], &Options::default(), &|| false).expect("an identification");
+        let mut found = identify(&model, &[log], &Options::default(), &|| false).expect("an identification");
         let samples = &found.samples[0];
-        let windows = [5, 60, 120].map(|first| Window { samples, first }).into_iter().collect();
+        let windows = [5, 60, 120].map(|first| Window::new(&model, samples, first, 10).expect("a window")).into();
         let sizes = Some([vec![0.1, 0.2], vec![1.0, 2.0]]);
         let rollouts = Rollouts { found: &found, windows, window: 0.1, sizes };
         let mut x = found.estimates.consistent.x.clone();
-        found.setup.problem.of_robot().positive.iter().for_each(|&k| x[k] = x[k].max(0.05));
+        let positive = found.setup.problem.of_robot().positive;
+        positive.iter().for_each(|&k| x[k] = x[k].max(0.05));
         let (_, gradient) = rollouts.loss(&x).expect("rollouts");
         let scale = gradient.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
         for k in 0..x.len() {
@@ -277,5 +304,9 @@ mod tests {
             let slope = (at(h) - at(-h)) / (2.0 * h);
             assert!((slope - gradient[k]).abs() < 1e-5 * scale, "{k}: {slope} and {}", gradient[k]);
         }
+        // friction and armature that are exactly 0
+        positive.iter().for_each(|&k| found.estimates.consistent.x[k] = 0.0);
+        let options = RefineOptions { window: 0.1, windows: 2, iterations: 1 };
+        refine(&found, &options, &|| false).expect("a refinement");
     }
 }

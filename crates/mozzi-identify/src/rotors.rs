@@ -29,6 +29,6 @@ pub fn rate(J: &[f64], dtheta: &[f64]) -> f64 {
 /// The rates of all rotors at all times: J θ̇ of signals θ̇ by velocity.
 pub fn signals(model: &Model, dtheta: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let N = dtheta.first().map_or(0, Vec::len);
-    let at = |J: &[f64], t: usize| J.iter().zip(dtheta).map(|(J, x)| J * x[t]).sum();
-    rates(model).iter().map(|J| (0..N).map(|t| at(J, t)).collect()).collect()
+    let at = |t: usize| dtheta.iter().map(|x| x[t]).collect::<Vec<f64>>();
+    rates(model).iter().map(|J| (0..N).map(|t| rate(J, &at(t))).collect()).collect()
 }

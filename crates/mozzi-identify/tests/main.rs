@@ -5,6 +5,7 @@ mod common;
 mod friction;
 mod mistakes;
 mod real_logs;
+mod refine;
 mod semidefinite;
 mod sensor;
 mod simulated;

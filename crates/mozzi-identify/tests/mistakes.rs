@@ -3,6 +3,7 @@
 use crate::common;
 
 use common::{cases, edited, floating_motion, humanoid, simulated};
+use core::f64::consts::TAU;
 use mozzi::{Environment, Model, SO3, Vec3, Wrench};
 use mozzi_identify::judgement::judge;
 use mozzi_identify::signals::{Cutoff, Filter, prepare};
@@ -294,4 +295,23 @@ fn a_base_has_its_velocity_in_its_own_axes() {
     let dtheta = slow.dtheta.as_mut().expect("velocities");
     dtheta.chunks_mut(n).for_each(|row| row[6..].iter_mut().for_each(|x| *x = x.to_degrees()));
     assert!(faults(&slow).iter().any(|text| text.contains("deg/s")), "{:?}", faults(&slow));
+}
+
+#[test]
+fn targets_of_a_floating_robot_are_unwrapped_with_their_joints() {
+    let model = humanoid();
+    let (n, nq) = (model.n(), model.nq());
+    let mut log = floating_motion(&model, 6.0, 100.0, 3);
+    log.target = Some(vec![0.0; log.rows() * n]);
+    let target = log.target.as_mut().expect("targets");
+    for k in 0..target.len() / n {
+        let angle = 0.02 * k as f64;
+        let wrapped = angle - TAU * (angle / TAU).round();
+        (log.theta[(k + 1) * nq - 1], target[(k + 1) * n - 1]) = (wrapped, wrapped);
+    }
+    let (mended, _) = log.with_clock_and_turns(&model).expect("a wrap");
+    let last = |table: &[f64], width: usize| table.chunks(width).map(|row| row[width - 1]).collect::<Vec<f64>>();
+    assert!((last(&mended.theta, nq).last().expect("a row") - 0.02 * 599.0).abs() < 1e-9);
+    let (theta, target) = (last(&mended.theta, nq), last(mended.target.as_ref().expect("targets"), n));
+    assert!(theta.iter().zip(&target).all(|(a, b)| (a - b).abs() < 1e-9));
 }

@@ -2,44 +2,14 @@
 
 use crate::common;
 
-use common::{floating_motion, humanoid, motion, normal, with_forces};
+use common::{UNFILTERED, floating_motion, humanoid, motion, normal, robot, truth, with_forces};
 use mozzi::random::Random;
 use mozzi::{Environment, Model, SpatialInertia, Vec3, Wrench};
-use mozzi_identify::signals::{Acceleration, Cutoff, Filter, Shape, prepare};
+use mozzi_identify::signals::{Cutoff, Filter, prepare};
 use mozzi_identify::{
-    Choice, Columns, Compressed, Equations, Evidence, Kind, Limits, Log, Options, RefineOptions, Sensor, Setup,
-    identified, identify, predict, refine,
+    Choice, Columns, Compressed, Equations, Evidence, Kind, Limits, Log, Options, Sensor, Setup, identified, identify,
+    predict,
 };
-
-const UNFILTERED: Filter = Filter {
-    cutoff: Cutoff::None,
-    order: 4,
-    acceleration: Acceleration::Differences,
-    friction: Shape { width: 0.05, stribeck: None },
-};
-
-fn robot(name: &str) -> Model {
-    mozzi_urdf::open(name).expect("embedded").description.build().expect("sound")
-}
-
-/// Another robot: links by up to 30 % heavier or lighter, friction and offsets.
-fn truth(columns: &Columns<'_>, seed: u64) -> Vec<f64> {
-    let mut random = Random(seed);
-    let mut x = columns.prior();
-    for first in columns.bodies() {
-        let factor = 1.0 + 0.3 * random.next();
-        x[first..first + 10].iter_mut().for_each(|x| *x *= factor);
-    }
-    for (k, unknown) in columns.unknowns.iter().enumerate() {
-        match unknown.kind {
-            Kind::Offset(_) => x[k] = 0.5 * random.next(),
-            Kind::Armature(_) => x[k] = 0.1 + 0.05 * random.next(),
-            kind if kind.is_positive() => x[k] = 1.0 + 0.5 * random.next(),
-            _ => {}
-        }
-    }
-    x
-}
 
 fn largest_error(found: &[f64], expected: &[f64], deviations: &[f64]) -> f64 {
     found.iter().zip(expected).zip(deviations).map(|((a, b), d)| (a - b).abs() / d).fold(0.0, f64::max)
@@ -288,32 +258,6 @@ fn limits_hold_and_contradictions_are_named() {
     let twice = vec![(name.clone(), [1.0, 2.0]), (name, [3.0, 4.0])];
     let error = run(Limits { between: twice, ..Limits::default() }).expect_err("a contradiction").to_string();
     assert!(error.contains("contradict"), "{error}");
-}
-
-#[test]
-fn rollouts_refine_what_forces_left_wrong() {
-    let model = robot("double_pendulum");
-    let choice = Choice::all(Sensor::Motor);
-    let columns = Columns::new(&model, choice.clone()).expect("columns");
-    let x = truth(&columns, 3);
-    let log = motion(&model, 10.0, 200.0, 1.0, 3);
-    let log = with_forces(&log, &model, &choice, &x, &[0.03, 0.01], &mut Random(1));
-    let options = Options { choice, filter: UNFILTERED, ..Options::default() };
-    let mut found = identify(&model, &[log], &options, &|| false).expect("an identification");
-    // links that are 5 % too heavy
-    let exact = found.estimates.consistent.x.clone();
-    for first in found.setup.columns.bodies() {
-        found.estimates.consistent.x[first..first + 10].iter_mut().for_each(|x| *x *= 1.05);
-    }
-    let refined = refine(&found, &RefineOptions::default(), &|| false).expect("a refinement");
-    eprintln!("errors {:?} become {:?}", refined.before, refined.after);
-    let sum = |errors: &[Vec<f64>; 2]| errors.iter().flatten().sum::<f64>();
-    assert!(sum(&refined.after) < 0.3 * sum(&refined.before));
-    let far = |x: &[f64]| {
-        let (a, b) = (found.setup.base.values(x), found.setup.base.values(&exact));
-        (a - b).norm()
-    };
-    assert!(far(&refined.x) < 0.3 * far(&found.estimates.consistent.x));
 }
 
 /// A wrist whose last motor turns with the joint before it, too: its rotor's friction and inertia act on both.

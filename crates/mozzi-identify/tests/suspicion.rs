@@ -2,8 +2,8 @@
 
 use crate::common;
 
-use common::{cases, edited, simulated};
-use mozzi::Model;
+use common::{cases, edited, motion, robot, simulated};
+use mozzi::{Environment, FrameId, Model, SpatialInertia, Sym3, Vec3, Wrench};
 use mozzi_identify::judgement::{judge, suspicion};
 use mozzi_identify::signals::{Cutoff, Filter, prepare};
 use mozzi_identify::{Choice, Finding, Level, Log, Options, Sensor, identify};
@@ -187,4 +187,41 @@ fn real_logs_are_not_suspected() {
         let wrong = ["lag", "unit", "scale", "gravity", "contradiction", "swapped_joints", "sign"];
         assert!(!all.iter().any(|finding| wrong.contains(&finding.code)), "{all:?}");
     }
+}
+
+#[test]
+fn known_payloads_and_measured_wrenches_belong_to_the_prediction() {
+    let model = robot("double_pendulum");
+    let tip = model.frame("tip").expect("a frame");
+    let body = SpatialInertia::new(2.0, Vec3::zero(), Sym3::diagonal(0.01, 0.01, 0.01));
+    let loaded = model.with_payload(tip, body).expect("a payload");
+    let mut log = motion(&model, 20.0, 100.0, 1.0, 3);
+    let (dtheta, ddtheta) = (log.dtheta.clone().expect("velocities"), log.ddtheta.clone().expect("accelerations"));
+    let mut wrenches = Vec::new();
+    let mut pushed = Vec::new();
+    for k in 0..log.rows() {
+        let row = 2 * k..2 * k + 2;
+        let state = [&log.theta, &dtheta, &ddtheta].map(|table| &table[row.clone()]);
+        let forces = |model: &Model, applied: &[(FrameId, Wrench)]| {
+            let environment = Environment { applied, ..model.environment() };
+            model.inverse_dynamics(state[0], state[1], state[2], &environment).expect("forces")
+        };
+        log.tau.extend(&forces(&loaded, &[]));
+        let F = Wrench::from_array([0.0, 0.0, 0.0, 40.0 * (0.05 * k as f64).sin(), 0.0, 15.0]);
+        wrenches.extend(F.to_array());
+        pushed.extend(&forces(&model, &[(tip, F)]));
+    }
+    let of = |log: &Log| {
+        let filter = Filter { cutoff: Cutoff::None, ..Filter::default() };
+        let (samples, _) = prepare(&model, log, &filter).expect("samples");
+        suspicion::check(&model, log, &filter, &samples).expect("a check")
+    };
+    assert_ne!(of(&log), Vec::new(), "the payload matters");
+    log.payload = Some((tip, body));
+    assert_eq!(of(&log), Vec::new());
+    (log.payload, log.tau) = (None, pushed);
+    log.wrenches = vec![(tip, wrenches.clone())];
+    assert_eq!(of(&log), Vec::new());
+    log.wrenches = vec![(tip, wrenches.iter().map(|x| -x).collect())];
+    assert_eq!(of(&log)[0].code, "wrench", "{:?}", of(&log));
 }

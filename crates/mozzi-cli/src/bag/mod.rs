@@ -53,10 +53,10 @@ impl Topics {
             of_topic.damaged += 1;
             return Ok(());
         };
-        if let Some(name) = state.names.iter().enumerate().find(|(k, name)| state.names[..*k].contains(name)) {
+        let mut known = BTreeSet::new();
+        if let Some(name) = state.names.iter().find(|name| !known.insert(*name)) {
             return Err(Failure::wrong(format!(
-                "{file}: a message of {topic} names the joint `{}` twice, expected different names",
-                name.1
+                "{file}: a message of {topic} names the joint `{name}` twice, expected different names"
             )));
         }
         match state.uneven() {

@@ -27,6 +27,6 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) 
         Unpacked::of(length).take(bytes).map_err(|why| cannot(file, &why))?;
         let mask = ProjectionMask::roots(builder.parquet_schema(), used.iter().copied());
         let reader = builder.with_projection(mask).build().map_err(|error| cannot(file, &error))?;
-        arrow::columns(file, &names, &found, &used, reader)
+        arrow::columns(file, &names, &found, &used, how.may_miss, reader)
     })
 }

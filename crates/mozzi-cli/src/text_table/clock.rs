@@ -77,12 +77,18 @@ fn days(date: &str) -> Option<i64> {
         () if separator == '.' || is_named || a > 12 => (c, b, a),
         () => (c, a, b), // the month first, as the day is no month
     };
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let last = match month {
+        2 => 28 + i64::from(is_leap),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    };
     let is_certain = a > 31 || separator == '.' || is_named || a > 12 || b > 12;
     if !is_certain
         || parts.next().is_some()
         || !(1900..3000).contains(&year)
         || !(1..=12).contains(&month)
-        || !(1..=31).contains(&day)
+        || !(1..=last).contains(&day)
     {
         return None;
     }
@@ -131,6 +137,9 @@ mod tests {
         for text in ["0.5", "120000.5", "1700000000000000000", "2024-05-01", "elbow", "24:00:00", "2024-13-01T00:00:00"]
         {
             assert_eq!(seconds(text), None, "{text}");
+        }
+        for date in ["2023-02-29", "1900-02-29", "2024-04-31"] {
+            assert_eq!(seconds(&format!("{date}T00:00:00")), None, "{date}");
         }
         assert!(is_ambiguous("03/01/2024 12:59:50.0 PM") && !is_ambiguous("2024-03-01") && !is_ambiguous("0.5"));
     }

@@ -1,5 +1,6 @@
 //! Limits of exciting motions: joints, torques, collisions.
 
+use core::f64::consts::{PI, TAU};
 use mozzi::{FrameId, Model, Vec3, Wrench};
 
 /// A box in {s} that a frame's origin must not leave.
@@ -47,9 +48,9 @@ const NARROW: f64 = 1e-6;
 const ROOM: f64 = 0.1;
 
 impl MotionLimits {
-    /// The robot's own: positions less 2 % at both ends, half a turn about 0 if there is no limit; velocities, 1 rad/s
-    /// or 0.2 m/s if there is none; accelerations that reach them in 0.3 s, less if the
-    /// file has lower limits; effort.
+    /// The robot's own: positions less 2 % at both ends, two turns at most, half a turn or 0.2 m to both sides of 0 if
+    /// there is no limit; velocities, 1 rad/s or 0.2 m/s if there is none; accelerations that reach them in 0.3 s, less
+    /// if the file has lower limits; effort.
     pub fn of(model: &Model) -> Self {
         let mut limits = MotionLimits {
             position: Vec::new(),
@@ -61,10 +62,12 @@ impl MotionLimits {
         };
         for joint in model.joints() {
             let slides = joint.kind.name() == "prismatic";
-            let half_turn = core::f64::consts::PI;
-            let [low, high] =
-                joint.limits.position.unwrap_or(if slides { [-0.2, 0.2] } else { [-half_turn, half_turn] });
-            let [low, high] = [low.max(-half_turn * 2.0), high.min(half_turn * 2.0)];
+            let [mut low, mut high] = joint.limits.position.unwrap_or(if slides { [-0.2, 0.2] } else { [-PI, PI] });
+            if !slides {
+                // two turns, as near to 0 as the limits are
+                low = low.max((high - 2.0 * TAU).min(-TAU));
+                high = high.min(low + 2.0 * TAU);
+            }
             let margin = 0.02 * (high - low);
             limits.position.push([low + margin, high - margin]);
             let velocity = joint.limits.velocity.filter(|v| *v > 0.0).unwrap_or(if slides { 0.2 } else { 1.0 });

@@ -5,8 +5,10 @@ use super::{Basis, Box3, ExciteOptions, Goal, MotionLimits, Sphere, excite};
 use crate::columns::Columns;
 use crate::compress::stacked;
 use crate::{Choice, Sensor};
+use core::f64::consts::TAU;
+use mozzi::model::description::JointKind;
 use mozzi::random::Random;
-use mozzi::{BaseParameters, Model};
+use mozzi::{BaseParameters, Model, ScrewAxis};
 
 fn robot(name: &str) -> Model {
     mozzi_urdf::open(name).expect("embedded").description.build().expect("sound")
@@ -140,4 +142,21 @@ fn wrong_options_are_named() {
     assert!(error(ExciteOptions { harmonics: 0, ..options.clone() }).contains("harmonics is 0"));
     assert!(error(ExciteOptions { start: Some(vec![0.0]), ..options.clone() }).contains("the start is [0.0]"));
     assert!(error(ExciteOptions { noise: vec![0.0, 1.0], ..options }).contains("the noise"));
+}
+
+#[test]
+fn limits_are_within_those_of_the_file() {
+    let mut pendulum = mozzi_urdf::open("double_pendulum").expect("embedded").description;
+    for (limits, expected) in [
+        ([7.0, 9.0], [7.04, 8.96]),
+        ([100.0, 200.0], [100.0 + 0.04 * TAU, 100.0 + 1.96 * TAU]),
+        ([-1e3, 1e3], [-0.96 * TAU, 0.96 * TAU]),
+    ] {
+        pendulum.joints[0].limits.position = Some(limits);
+        let found = MotionLimits::of(&pendulum.clone().build().expect("sound")).position[0];
+        assert!((0..2).all(|end| (found[end] - expected[end]).abs() < 1e-9), "{limits:?}: {found:?}");
+    }
+    pendulum.joints[0].limits.position = Some([7.0, 9.0]);
+    pendulum.joints[0].kind = JointKind::Screw(ScrewAxis::new([0.0; 3], [1.0, 0.0, 0.0]).expect("unit"));
+    assert_eq!(MotionLimits::of(&pendulum.build().expect("sound")).position[0], [7.04, 8.96]);
 }

@@ -1,8 +1,9 @@
 //! Mistakes that may have been made in a log, each undone in a sample.
 
 use crate::mend::is_revolute;
+use crate::signals::Samples;
 use core::f64::consts::{FRAC_PI_2, PI};
-use mozzi::{Model, Vec3};
+use mozzi::{FrameId, Model, Vec3, Wrench};
 
 /// One joint's positions are not taken for degrees below this, rad.
 const TURN: f64 = 2.0 * PI;
@@ -33,7 +34,7 @@ pub enum Mistake {
     NoGravity,
     /// Measured wrenches that do not act on the robot.
     Wrench,
-    /// Measured wrenches that the robot applies.
+    /// Measured wrenches of the opposite sign.
     WrenchSign,
 }
 
@@ -71,6 +72,21 @@ impl Mistake {
             all.push(Mistake::NoGravity);
         }
         all
+    }
+
+    /// Those of the samples' measured wrenches.
+    pub fn of_wrenches(samples: &Samples) -> impl Iterator<Item = Mistake> {
+        [Mistake::Wrench, Mistake::WrenchSign].into_iter().filter(|_| !samples.wrenches.is_empty())
+    }
+
+    /// The wrenches of sample k without the mistake.
+    pub fn applied(&self, samples: &Samples, k: usize) -> Vec<(FrameId, Wrench)> {
+        let applied = samples.applied(k).into_iter();
+        match self {
+            Mistake::Wrench => Vec::new(),
+            Mistake::WrenchSign => applied.map(|(frame, F)| (frame, -F)).collect(),
+            _ => applied.collect(),
+        }
     }
 
     /// Joints of each pair.
@@ -185,8 +201,8 @@ impl Mistake {
                     .to_string()
             }
             Mistake::WrenchSign => {
-                "the measured wrenches seem to have the opposite sign: what the robot applies to its \
-                                    surroundings, expected what acts on the robot"
+                "the measured wrenches seem to have the opposite sign: what acts on the robot, expected what \
+                                    the robot applies to its environment"
                     .to_string()
             }
             Mistake::NoGravity => {

@@ -55,9 +55,7 @@ pub fn check(found: &Identification<'_>, log: &str, samples: &Samples) -> Option
     let mut all: Vec<Mistake> =
         (0..n).flat_map(|a| [Mistake::ForceSign(a), Mistake::MotionSign(a), Mistake::JointSign(a)]).collect();
     all.extend((0..n).flat_map(|a| UNITS.map(|unit| Mistake::ForceScale(a, unit))));
-    if !few.wrenches.is_empty() {
-        all.extend([Mistake::Wrench, Mistake::WrenchSign]);
-    }
+    all.extend(Mistake::of_wrenches(&few));
     if n <= MOST_JOINTS {
         all.extend(Mistake::swaps(n));
     }

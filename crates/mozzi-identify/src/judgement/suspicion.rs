@@ -2,6 +2,7 @@
 
 use super::gains::{self, Fit, Gain};
 use super::mistake::Mistake;
+use crate::payload::robot_of;
 use crate::signals::{Cutoff, Filter, Samples, prepare};
 use crate::{Error, Finding, Level, Log};
 use mozzi::quantities::{InverseDynamics, Query};
@@ -45,7 +46,7 @@ pub fn check(model: &Model, log: &Log, filter: &Filter, samples: &Samples) -> Re
     let all = [&mut converted.theta].into_iter().chain(rates);
     all.for_each(|table| table.iter_mut().for_each(|x| *x = x.to_radians()));
     let Ok((samples, _)) = prepare(model, &converted, filter) else { return Ok(found) };
-    let mut comparison = Comparison::new(model, &samples);
+    let mut comparison = Comparison::new(model, &samples)?;
     if !comparison.is_explained(&Mistake::None) {
         return Ok(found);
     }
@@ -70,12 +71,13 @@ fn mistakes(model: &Model, log: &str, samples: &Samples) -> Result<Vec<Finding>,
         return Ok(Vec::new());
     }
     let names: Vec<&str> = model.velocity_names().collect();
-    let mut comparison = Comparison::new(model, samples);
+    let mut comparison = Comparison::new(model, samples)?;
     let as_it_is = comparison.score(&Mistake::None);
     let share = |score: f64| (score / names.len() as f64).exp();
     let most = comparison.most();
     let all: Vec<(Mistake, f64)> = Mistake::all(model, comparison.limits.is_some(), &most)
         .into_iter()
+        .chain(Mistake::of_wrenches(samples))
         .filter_map(|mistake| {
             let (score, without) = comparison.scores(&mistake);
             // what friction and armature explain alone is no evidence
@@ -150,7 +152,8 @@ fn is_little(sums: &[Fit], factor: f64) -> bool {
 }
 
 struct Comparison<'a> {
-    model: &'a Model,
+    /// The robot with the log's payload.
+    model: Model,
     samples: &'a Samples,
     rows: Vec<usize>,
     /// Effort limits of all joints, if all have one.
@@ -159,7 +162,7 @@ struct Comparison<'a> {
 }
 
 impl<'a> Comparison<'a> {
-    fn new(model: &'a Model, samples: &'a Samples) -> Self {
+    fn new(model: &Model, samples: &'a Samples) -> Result<Self, Error> {
         let step = samples.count().div_ceil(COMPARED);
         // at uneven distances: a periodic motion may repeat in a multiple of the step
         let uneven = (0..samples.count()).step_by(step).enumerate().map(|(k, row)| row + k * 7919 % step);
@@ -169,7 +172,9 @@ impl<'a> Comparison<'a> {
             joint.limits.effort.filter(|limit| *limit > 0.0 && limit.is_finite())
         };
         let limits = model.velocity_names().map(limit).collect();
-        Comparison { model, samples, rows, limits, workspace: fast::Workspace::new(model) }
+        let model = robot_of(model, model.parameters(), samples)?;
+        let workspace = fast::Workspace::new(&model);
+        Ok(Comparison { model, samples, rows, limits, workspace })
     }
 
     /// The largest size of each position.
@@ -253,10 +258,10 @@ impl<'a> Comparison<'a> {
         let n = self.model.n();
         let query = Query::from(InverseDynamics);
         let environment = self.model.environment();
-        let environment = match mistake {
-            Mistake::Gravity(g) => Environment { gravity: Vec3(*g), ..environment },
-            Mistake::NoGravity => Environment { gravity: Vec3([0.0; 3]), ..environment },
-            _ => environment,
+        let gravity = match mistake {
+            Mistake::Gravity(g) => Vec3(*g),
+            Mistake::NoGravity => Vec3::zero(),
+            _ => environment.gravity,
         };
         let mut sums = vec![Fit::default(); n];
         let mut predicted = vec![0.0; n];
@@ -267,7 +272,8 @@ impl<'a> Comparison<'a> {
             mistake.undo(&mut motion, &mut tau, self.limits.as_deref().unwrap_or_default());
             let [theta, dtheta, ddtheta] = &motion;
             let inputs: [&[f64]; 3] = [theta, dtheta, ddtheta];
-            fast::evaluate(&query, self.model, &inputs, &environment, &mut self.workspace, &mut [&mut predicted]);
+            let environment = Environment { gravity, applied: &mistake.applied(self.samples, k), ..environment };
+            fast::evaluate(&query, &self.model, &inputs, &environment, &mut self.workspace, &mut [&mut predicted]);
             for j in 0..n {
                 sums[j].add(tau[j], predicted[j], dtheta[j], ddtheta[j]);
             }

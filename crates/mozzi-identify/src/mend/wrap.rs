@@ -12,13 +12,13 @@ const JUMP: (f64, f64) = (15.0, 0.05);
 
 /// Adds whole turns, so that revolute joints turn continuously; other jumps are faults.
 pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>) {
-    let nq = model.nq();
+    let (n, nq) = (model.n(), model.nq());
     let axes = axes(model);
     let found = each(axes.len(), log.theta.len(), |k| {
         let (q, _, name) = &axes[k];
         Turns::of(log, *q, nq, is_revolute(model, name))
     });
-    for (Turns { rows, offsets, wraps, first, jump, usual }, (q, _, name)) in found.into_iter().zip(axes) {
+    for (Turns { rows, offsets, wraps, first, jump, usual }, (q, j, name)) in found.into_iter().zip(axes) {
         if let Some((row, step)) = jump {
             let what = format!("{}: the position of {name} jumps by {step:.4} at {}", log.name, at(log, row));
             findings.push(match (step.abs() - 360.0).abs() < (FAST * usual).min(180.0) {
@@ -49,8 +49,8 @@ pub fn unwrap(model: &Model, log: &mut Cow<'_, Log>, findings: &mut Vec<Finding>
         // the target of the same turn
         if let Some(target) = &mut log.target {
             for &row in &rows {
-                let turns = (log.theta[row * nq + q] - target[row * nq + q]) / core::f64::consts::TAU;
-                target[row * nq + q] += core::f64::consts::TAU * turns.round();
+                let target = &mut target[row * n + j];
+                *target += TAU * ((log.theta[row * nq + q] - *target) / TAU).round();
             }
         }
     }

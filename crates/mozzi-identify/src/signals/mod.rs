@@ -12,7 +12,7 @@ use crate::log::Rows;
 use crate::mend::mend;
 use crate::{Error, Finding, Level, Log, rotors};
 use butterworth::LowPass;
-use mozzi::{FrameId, Freedom, Model, SpatialInertia};
+use mozzi::{FrameId, Freedom, Model, SpatialInertia, Wrench};
 pub(crate) use quaternions::{continuous, differentiate, normalize};
 use smoothing_spline::SmoothingSpline;
 
@@ -125,6 +125,12 @@ impl Samples {
     /// The number of samples.
     pub fn count(&self) -> usize {
         self.t.len()
+    }
+
+    /// The measured wrenches of sample k.
+    pub fn applied(&self, k: usize) -> Vec<(FrameId, Wrench)> {
+        let wrench = |table: &[f64]| Wrench::from_array(core::array::from_fn(|i| table[6 * k + i]));
+        self.wrenches.iter().map(|(frame, table)| (*frame, wrench(table))).collect()
     }
 
     /// The share of independent samples: neighbours that a filter of cut-off f_c made alike count as 2 f_c / rate.

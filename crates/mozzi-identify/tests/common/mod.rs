@@ -3,7 +3,40 @@
 
 use mozzi::Model;
 use mozzi::random::Random;
-use mozzi_identify::{Choice, Columns, Equations, Log, Sensor};
+use mozzi_identify::signals::{Acceleration, Cutoff, Filter, Shape};
+use mozzi_identify::{Choice, Columns, Equations, Kind, Log, Sensor};
+
+/// No filter.
+pub const UNFILTERED: Filter = Filter {
+    cutoff: Cutoff::None,
+    order: 4,
+    acceleration: Acceleration::Differences,
+    friction: Shape { width: 0.05, stribeck: None },
+};
+
+/// An embedded robot.
+pub fn robot(name: &str) -> Model {
+    mozzi_urdf::open(name).expect("embedded").description.build().expect("sound")
+}
+
+/// Another robot: links by up to 30 % heavier or lighter, friction and offsets.
+pub fn truth(columns: &Columns<'_>, seed: u64) -> Vec<f64> {
+    let mut random = Random(seed);
+    let mut x = columns.prior();
+    for first in columns.bodies() {
+        let factor = 1.0 + 0.3 * random.next();
+        x[first..first + 10].iter_mut().for_each(|x| *x *= factor);
+    }
+    for (k, unknown) in columns.unknowns.iter().enumerate() {
+        match unknown.kind {
+            Kind::Offset(_) => x[k] = 0.5 * random.next(),
+            Kind::Armature(_) => x[k] = 0.1 + 0.05 * random.next(),
+            kind if kind.is_positive() => x[k] = 1.0 + 0.5 * random.next(),
+            _ => {}
+        }
+    }
+    x
+}
 
 /// A random number of the normal distribution, of deviation 1.
 pub fn normal(random: &mut Random) -> f64 {

@@ -33,7 +33,7 @@ pub fn read<'m>(file: &str, choose: &dyn Fn(&[String]) -> &'m Model, how: &How) 
         let names: Vec<String> = reader(None)?.schema().fields().iter().map(|field| field.name().clone()).collect();
         let found = recognised(file, &names, choose(&names), how)?;
         let used = found.used(file)?;
-        columns(file, &names, &found, &used, reader(Some(used.clone()))?)
+        columns(file, &names, &found, &used, how.may_miss, reader(Some(used.clone()))?)
     })
 }
 
@@ -43,6 +43,7 @@ pub fn columns(
     names: &[String],
     found: &Recognised,
     used: &[usize],
+    may_miss: bool,
     batches: impl Iterator<Item = std::result::Result<RecordBatch, ArrowError>>,
 ) -> Result<Samples> {
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
@@ -50,7 +51,7 @@ pub fn columns(
     for batch in batches {
         let batch = batch.map_err(|error| cannot(file, &error))?;
         for (&c, array) in used.iter().zip(batch.columns()) {
-            column::numbers(array.as_ref(), &mut columns[c]).map_err(|(row, what)| {
+            column::numbers(array.as_ref(), may_miss, &mut columns[c]).map_err(|(row, what)| {
                 Failure::wrong(format!("{file}: column `{}`{}", names[c], at(row, rows, &what)))
             })?;
         }
