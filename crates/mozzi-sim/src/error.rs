@@ -141,7 +141,7 @@ impl fmt::Display for Error {
                 write!(
                     f,
                     "the energy is off by {drift} J until t = {time} s, and the largest kinetic energy is {kinetic} J: the loops {loops} \
-                     need shorter steps than {} s, such as {} s, or a method of higher order",
+                     need shorter steps than {} s; try {} s, or a method of higher order",
                     steps[0], steps[1]
                 )
             }

@@ -49,7 +49,7 @@ const ROOM: f64 = 0.1;
 
 impl MotionLimits {
     /// The robot's own: positions less 2 % at both ends, two turns at most, half a turn or 0.2 m to both sides of 0 if
-    /// there is no limit; velocities, 1 rad/s or 0.2 m/s if there is none; accelerations that reach them in 0.3 s, less
+    /// there is no limit, a turn or 0.4 m from the only one; velocities, 1 rad/s or 0.2 m/s if there is none; accelerations that reach them in 0.3 s, less
     /// if the file has lower limits; effort.
     pub fn of(model: &Model) -> Self {
         let mut limits = MotionLimits {
@@ -62,7 +62,13 @@ impl MotionLimits {
         };
         for joint in model.joints() {
             let slides = joint.kind.name() == "prismatic";
-            let [mut low, mut high] = joint.limits.position.unwrap_or(if slides { [-0.2, 0.2] } else { [-PI, PI] });
+            let reach = if slides { 0.2 } else { PI };
+            let [mut low, mut high] = match joint.limits.bounds() {
+                [low, high] if low.is_finite() && high.is_finite() => [low, high],
+                [low, _] if low.is_finite() => [low, low + 2.0 * reach],
+                [_, high] if high.is_finite() => [high - 2.0 * reach, high],
+                _ => [-reach, reach],
+            };
             if !slides {
                 // two turns, as near to 0 as the limits are
                 low = low.max((high - 2.0 * TAU).min(-TAU));

@@ -151,6 +151,7 @@ fn limits_are_within_those_of_the_file() {
         ([7.0, 9.0], [7.04, 8.96]),
         ([100.0, 200.0], [100.0 + 0.04 * TAU, 100.0 + 1.96 * TAU]),
         ([-1e3, 1e3], [-0.96 * TAU, 0.96 * TAU]),
+        ([1.0, f64::MAX], [1.0 + 0.02 * TAU, 1.0 + 0.98 * TAU]),
     ] {
         pendulum.joints[0].limits.position = Some(limits);
         let found = MotionLimits::of(&pendulum.clone().build().expect("sound")).position[0];

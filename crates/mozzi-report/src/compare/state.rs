@@ -50,8 +50,9 @@ impl State {
 /// Random position, velocity and acceleration. Limits that exclude a range around 0 are respected.
 fn of_one_axis(joint: &Joint, random: &mut Random) -> [f64; 3] {
     let reach = if joint.kind.name() == "prismatic" { 0.5 } else { PI };
-    let [low, high] = joint.limits.position.unwrap_or([-reach, reach]);
-    let (low, high) = if low > reach || high < -reach { (low, high) } else { (low.max(-reach), high.min(reach)) };
+    let [low, high] = joint.limits.bounds();
+    let low = low.max((-reach).min(high - 2.0 * reach));
+    let high = high.min(reach.max(low + 2.0 * reach));
     [low + (high - low) * within(random), random.next(), 2.0 * random.next()]
 }
 

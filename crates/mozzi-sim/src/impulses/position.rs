@@ -32,8 +32,8 @@ const FARTHEST: f64 = 10.0;
 const YIELDS: f64 = 1e7;
 /// And relative to its largest entry: a row of a loop that holds anyway is rounding.
 const NOISE: f64 = 1e-14;
-/// No correction moves a joint farther, rad or m.
-const AT_ONCE: f64 = 0.5;
+/// No correction moves a joint farther than this, and twice what the fastest one moves in the step, rad or m.
+const AT_ONCE: f64 = 1e-2;
 
 /// A row whose position is to be put right.
 #[allow(clippy::large_enum_variant)] // a short list, made once a step
@@ -64,10 +64,10 @@ struct Nearer {
 
 impl Impulses<'_> {
     /// θ ← θ ⊕ δ with the least δᵀMδ that brings the contacts and stops that carried in the last step to gap 0, from
-    /// either side, and sticking points back to their anchors. `h` is the length of the step. Returns true if θ
-    /// changed.
-    pub fn correct(&mut self, t: f64, theta: &mut [f64], h: f64) -> Result<bool, Error> {
-        let stopped = core::mem::take(&mut self.memory.stopped);
+    /// either side, and sticking points back to their anchors. `h` is the length of the step, `moves` how far the
+    /// fastest joint moves in it. Returns true if θ changed.
+    pub fn correct(&mut self, t: f64, theta: &mut [f64], h: f64, moves: f64) -> Result<bool, Error> {
+        let (stopped, most) = (core::mem::take(&mut self.memory.stopped), AT_ONCE + 2.0 * moves);
         if self.memory.carrying.is_empty() {
             self.memory.anchors.clear();
             return Ok(false);
@@ -84,7 +84,9 @@ impl Impulses<'_> {
             if correction == 0 {
                 self.mass.factor(theta, 0.0, &[])?;
             }
-            let Some(nearer) = self.nearer_without_pressing(t, theta, (open, errors), &mut pressed) else { break };
+            let Some(nearer) = self.nearer_without_pressing(t, theta, (open, errors), &mut pressed, most) else {
+                break;
+            };
             theta.copy_from_slice(&nearer.theta);
             changes = true;
             if !nearer.halves {
@@ -104,9 +106,10 @@ impl Impulses<'_> {
         theta: &[f64],
         (mut open, mut errors): (Vec<OpenRow>, DVector<f64>),
         pressed: &mut Vec<(usize, usize)>,
+        most: f64,
     ) -> Option<Nearer> {
         for _ in 0..=ADDITIONS {
-            let nearer = self.nearer(t, theta, open, &errors, pressed)?;
+            let nearer = self.nearer(t, theta, open, &errors, pressed, most)?;
             if nearer.farthest <= STILL {
                 return Some(nearer);
             }
@@ -140,6 +143,7 @@ impl Impulses<'_> {
         open: Vec<OpenRow>,
         errors: &DVector<f64>,
         pressed: &[(usize, usize)],
+        most: f64,
     ) -> Option<Nearer> {
         let yields: Vec<f64> = open.iter().map(OpenRow::compliance).collect();
         let J = self.jacobian(theta, open);
@@ -159,7 +163,7 @@ impl Impulses<'_> {
             }
             let (mut change, mut theta) = (J.tr_mul(&p), theta.to_vec());
             self.mass.divide(change.as_mut_slice());
-            if !(change.amax() <= AT_ONCE) {
+            if !(change.amax() <= most) {
                 return None; // a joint with hardly any inertia would turn by anything
             }
             integrate(self.model, &mut theta, change.as_slice(), 1.0);

@@ -159,7 +159,8 @@ impl Moreau {
         state.t = end;
         let before =
             (!impulses.memory.carrying.is_empty()).then(|| equation.energy(&state.theta, &state.dtheta, state.works));
-        let corrects = impulses.correct(end, &mut state.theta, h)?;
+        let fastest = state.dtheta.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let corrects = impulses.correct(end, &mut state.theta, h, h * fastest)?;
         impulses.put_within_stops(&mut state.theta);
         driven.close(end, &mut state.theta, &mut state.dtheta)?;
         if let (true, Some(before)) = (corrects, before) {
