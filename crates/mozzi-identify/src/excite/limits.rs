@@ -49,8 +49,8 @@ const ROOM: f64 = 0.1;
 
 impl MotionLimits {
     /// The robot's own: positions less 2 % at both ends, two turns at most, half a turn or 0.2 m to both sides of 0 if
-    /// there is no limit, a turn or 0.4 m from the only one; velocities, 1 rad/s or 0.2 m/s if there is none; accelerations that reach them in 0.3 s, less
-    /// if the file has lower limits; effort.
+    /// there is no limit, a turn or 0.4 m from the only one; velocities, 1 rad/s or 0.2 m/s if there is none;
+    /// accelerations that reach them in 0.3 s, less if the file has lower limits; effort.
     pub fn of(model: &Model) -> Self {
         let mut limits = MotionLimits {
             position: Vec::new(),
