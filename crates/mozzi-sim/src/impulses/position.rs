@@ -33,7 +33,7 @@ const YIELDS: f64 = 1e7;
 /// And relative to its largest entry: a row of a loop that holds anyway is rounding.
 const NOISE: f64 = 1e-14;
 /// No correction moves a joint farther than this, and twice what the fastest one moves in the step, rad or m.
-const AT_ONCE: f64 = 1e-2;
+const AT_ONCE: f64 = 0.03;
 
 /// A row whose position is to be put right.
 #[allow(clippy::large_enum_variant)] // a short list, made once a step
