@@ -135,7 +135,7 @@ impl<'r> Course<'r> {
             motion,
             next: options.record_every,
             recorder,
-            drift: Drift::of(model, &options),
+            drift: Drift::of(model, options.method),
             is_closed: false,
         };
         course.start_impulses()?;
@@ -172,7 +172,8 @@ impl<'r> Course<'r> {
                 self.record();
             }
         }
-        self.drift.as_ref().map_or(Ok(()), |drift| drift.check(self.motion.t))
+        let check = |drift: &Drift| drift.check(self.driven.model, self.motion.t, self.options.step());
+        self.drift.as_ref().map_or(Ok(()), check)
     }
 
     /// Nothing can happen within a step: steps of equal length, which end at their own times.
