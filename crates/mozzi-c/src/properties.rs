@@ -5,6 +5,7 @@ use crate::handle::{borrow, check_pointer};
 use crate::robot::{Frame, ModelHandle, Names};
 use crate::status::{Status, guard, guard_or, of_model, refuse};
 use mozzi::Model;
+use mozzi::model::Bounds;
 use std::ffi::c_char;
 
 /// `name: |model| size, about`: functions that return a size, 0 for an invalid handle.
@@ -151,7 +152,8 @@ pub unsafe extern "C" fn mozzi_model_limits(
         wanted(bounds(0), lower, "lower")?;
         wanted(bounds(1), upper, "upper")?;
         let unlimited = f64::INFINITY;
-        wanted(limits().map(|limits| limits.velocity.unwrap_or(unlimited)).collect(), velocity, "velocity")?;
+        let [speeds, _] = Bounds::of_rates(&robot.model);
+        wanted(speeds, velocity, "velocity")?;
         wanted(limits().map(|limits| limits.effort.unwrap_or(unlimited)).collect(), effort, "effort")
     })
 }

@@ -47,9 +47,19 @@ pub fn turns(kind: JointKind) -> bool {
     matches!(kind, JointKind::Screw(A) if A.twist().w.0 != [0.0; 3])
 }
 
+/// A joint's position or rate, or a ball's angle, of a page: in degrees with `--deg`.
+pub fn of_joint(kind: JointKind, x: f64) -> f64 {
+    if turns(kind) || matches!(kind, JointKind::Ball(_)) { of_turn(x) } else { x }
+}
+
+/// An angle of a page.
+pub fn of_turn(x: f64) -> f64 {
+    if are_degrees() { x.to_degrees() } else { x }
+}
+
 /// Positions or rates of a page: in degrees with `--deg`.
 pub fn shown(values: &[f64], are_angles: &[bool]) -> Vec<f64> {
-    let one = |(&x, &is_angle): (&f64, &bool)| if is_angle && are_degrees() { x.to_degrees() } else { x };
+    let one = |(&x, &is_angle): (&f64, &bool)| if is_angle { of_turn(x) } else { x };
     values.iter().zip(are_angles).map(one).collect()
 }
 

@@ -32,6 +32,8 @@ impl EventArguments {
                 "--deg: conditions of --until and --report-event are in radians, expected no --deg",
             ));
         }
+        self.until.iter().try_for_each(|text| check_unit("--until", text, model))?;
+        self.report_event.iter().try_for_each(|text| check_unit("--report-event", text, model))?;
         for (flag, list, stop) in [("--until", self.until(), true), ("--report-event", self.report_event(), false)] {
             for text in &list {
                 let wrong = |error| Failure::wrong(format!("{flag} {error}"));
@@ -63,6 +65,32 @@ impl EventArguments {
     fn report_event(&self) -> Vec<String> {
         self.report_event.iter().map(|text| in_radians(text)).collect()
     }
+}
+
+/// `rail > 0.1deg` of a joint that slides has no meaning, nor has `tool0.z > 5deg`.
+fn check_unit(flag: &str, text: &str, model: &Model) -> Result<()> {
+    let Some((name, number)) = text.rsplit_once(['=', '<', '>']).map(|(before, number)| (before, number.trim())) else {
+        return Ok(());
+    };
+    if !["deg", "rad"].iter().any(|unit| number.ends_with(unit)) {
+        return Ok(());
+    }
+    let name = name.trim_end_matches(['=', '<', '>']).trim();
+    let index = |entry: &str, names: &[&str]| {
+        let by_number = entry.parse::<usize>().ok().and_then(|k| k.checked_sub(1));
+        names.iter().position(|known| *known == entry).or(by_number)
+    };
+    let (positions, velocities): (Vec<_>, Vec<_>) =
+        (model.position_names().collect(), model.velocity_names().collect());
+    let turns = match (name.strip_prefix("dtheta_"), name.strip_prefix("theta_").unwrap_or(name)) {
+        (Some(entry), _) => index(entry, &velocities).and_then(|k| angles::of_velocities(model).get(k).copied()),
+        (None, entry) => index(entry, &positions).and_then(|k| angles::of_positions(model).get(k).copied()),
+    };
+    // what is no joint's is a frame's coordinate, or unknown
+    if turns.unwrap_or(!name.contains('.')) {
+        return Ok(());
+    }
+    Err(Failure::wrong(format!("{flag} `{text}`: {number} is an angle, and `{name}` is a length, expected it in m")))
 }
 
 /// `elbow > 90deg` with its number in radians.

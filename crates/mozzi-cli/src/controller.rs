@@ -109,13 +109,8 @@ impl Controller {
         contacts: &Contacts,
     ) -> Result<Box<dyn Input + 'a>> {
         let model = self.believed.as_ref().unwrap_or(robot);
-        if model.n() != robot.n() || model.nq() != robot.nq() {
-            let (found, expected) = (model.n(), robot.n());
-            let place = self.place();
-            return Err(Failure::wrong(format!(
-                "{place}: model: the robot has {found} velocities, expected {expected}, the number of the simulated robot"
-            )));
-        }
+        let same = robot.check_same_joints("the controller's robot", model);
+        same.map_err(|error| Failure::wrong(format!("{}: model: {error}", self.place())))?;
         let place = |error: mozzi_motion::Error| Failure::wrong(format!("{}: {error}", self.place()));
         let start = reference.at(0.0).theta;
         Ok(match self.kind.as_str() {

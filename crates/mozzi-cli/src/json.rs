@@ -1,9 +1,19 @@
 //! Values as JSON. Matrices are lists of rows; NaN and infinity are null, since JSON cannot express them.
 
+use crate::failure::{Failure, Result};
 use mozzi::{Base, Model};
 pub use mozzi_urdf::json::{pose, print, rows, screws, vector};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
+
+/// # Errors
+/// If standard output would get both JSON and a table.
+pub fn unless_rows(is_json: bool, out: Option<&str>) -> Result<()> {
+    match is_json && out == Some("-") {
+        true => Err(Failure::wrong("--json and --out - both write to standard output, expected one of them")),
+        false => Ok(()),
+    }
+}
 
 /// An array by rows: a number, a list, or lists of lists.
 pub fn nested(shape: &[usize], values: &[f64]) -> Value {

@@ -24,6 +24,7 @@ mod json;
 mod json_file;
 mod limits;
 mod log;
+mod missing;
 mod motors;
 mod numbers;
 mod output;

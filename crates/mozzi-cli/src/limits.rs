@@ -1,5 +1,6 @@
 //! Limits of a motion by flags.
 
+use crate::angles;
 use crate::failure::{Result, note};
 use crate::numbers::one_or_each;
 use crate::state::by_name;
@@ -30,9 +31,9 @@ pub fn of_flag(
         }
         Some(text) => read(text, are_angles)?,
     };
-    let above = model.velocity_names().zip(found.iter().zip(file)).find(|(_, (x, of_file))| *x > *of_file);
-    if let Some((name, (x, of_file))) = above {
-        let (x, of_file) = (scalar(*x), scalar(*of_file));
+    let above = model.velocity_names().enumerate().find(|(k, _)| found[*k] > file[*k]);
+    if let Some((k, name)) = above {
+        let [x, of_file] = [found[k], file[k]].map(|x| scalar(angles::shown(&[x], &are_angles[k..=k])[0]));
         note(&format!("{flag} is {x} for `{name}`, above the limit {of_file} of the robot's file"));
     }
     Ok(found)

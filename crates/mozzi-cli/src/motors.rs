@@ -13,6 +13,7 @@ use mozzi_motion::Policy;
 use mozzi_motion::trajectories::{Hold, OfJoints, Recorded, Reference};
 use mozzi_sim::{self, Contacts, GravityCompensation, Input, Outside, Table, TorqueTable, WrenchTable, Zero};
 use mozzi_urdf::mjcf::{self, Actuated};
+use std::cell::OnceCell;
 
 /// The value of --torque for the actuators of a file.
 pub const ACTUATORS: &str = "actuators";
@@ -44,6 +45,9 @@ const RESPONSE: f64 = 0.1;
 
 #[derive(Args, Debug)]
 pub struct MotorArguments {
+    /// The first table whose times are counted from its first row, and that row's time, s.
+    #[arg(skip)]
+    origin: OnceCell<(String, f64)>,
     /// Motor torques: zero, gravity-compensation, actuators (those of an MJCF file with the controls of --state, and
     /// its gravity compensation), numbers τ1,τ2,… that stay, or a table with columns t, tau_1, … (interpolated
     /// linearly); added to a controller's [default: actuators if the file has some that act, else zero]
@@ -113,6 +117,7 @@ impl MotorArguments {
         let (samples, is_of_joints) = table_file::read_joints(file, model, &fixed, &motion::HOW)?;
         let samples = motion::mended(samples, if is_of_joints { &fixed } else { model })?;
         motion::check(&samples)?;
+        self.agree(&samples)?;
         let times = samples.times()?;
         let theta = samples.need("theta", model)?;
         // does the table describe the base and the joints, or the joints only?
@@ -124,6 +129,11 @@ impl MotorArguments {
             ["dtheta", "ddtheta"].map(|name| samples.tables.get(name).map(|table| joints(table, whole.velocities())));
         let place = |error: mozzi_motion::Error| Failure::wrong(format!("{file}: {error}"));
         let (theta, pose) = (joints(theta, whole.positions()), theta.first_chunk().copied());
+        if dtheta.is_none() && moves_at_ends(times, &theta) {
+            failure::note(&format!(
+                "{file}: without velocities the motion is from rest to rest; it moves at its ends: add columns dtheta_ …"
+            ));
+        }
         let recorded = Recorded::new(&fixed, times, &theta, dtheta.as_deref(), ddtheta.as_deref()).map_err(place)?;
         if !model.is_floating() {
             let start = recorded.at(0.0);
@@ -238,6 +248,22 @@ impl MotorArguments {
         Ok(Box::new(WrenchTable(tip, self.table(&samples, values, end)?)))
     }
 
+    /// Tables whose times are counted from their first rows must begin together.
+    fn agree(&self, samples: &Samples) -> Result<()> {
+        let Samples { file, start, .. } = samples;
+        if *start == 0.0 {
+            return Ok(());
+        }
+        let (first, begin) = self.origin.get_or_init(|| (file.clone(), *start));
+        if begin == start {
+            return Ok(());
+        }
+        Err(Failure::wrong(format!(
+            "{first} begins at t = {begin} s, and {file} at {start} s: times are counted from the first row of each; \
+             subtract one time from both"
+        )))
+    }
+
     fn table(&self, samples: &Samples, values: Vec<f64>, end: f64) -> Result<Table> {
         let outside = match self.extrapolate {
             Beyond::Error => Outside::Error,
@@ -246,6 +272,10 @@ impl MotorArguments {
         };
         let times = samples.times()?;
         motion::check(samples)?;
+        if samples.start != 0.0 {
+            failure::note(&format!("{}: times are counted from the first row, t = {} s", samples.file, samples.start));
+        }
+        self.agree(samples)?;
         let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or(0.0));
         if matches!(self.extrapolate, Beyond::Error) && (first > 0.0 || last < end * (1.0 - 1e-12)) {
             return Err(Failure::wrong(format!(
@@ -255,6 +285,17 @@ impl MotorArguments {
         }
         Ok(Table::new(times.to_vec(), values)?.outside(outside))
     }
+}
+
+/// True if positions of 20 rows or more move at the first or last one with a tenth of their largest speed.
+fn moves_at_ends(times: &[f64], theta: &[Vec<f64>]) -> bool {
+    let speed = |k: usize| {
+        let ways = theta[k + 1].iter().zip(&theta[k]).map(|(b, a)| (b - a).abs());
+        ways.fold(0.0, f64::max) / (times[k + 1] - times[k])
+    };
+    let steps = times.len().saturating_sub(1);
+    let most = (0..steps).map(speed).fold(0.0, f64::max);
+    steps >= 19 && speed(0).max(speed(steps - 1)) > 0.1 * most
 }
 
 /// A reference table.
@@ -270,4 +311,21 @@ pub fn or_hold<'a>(followed: Option<&'a Followed>, hold: &'a Hold) -> &'a dyn Re
         Some(followed) => &*followed.reference,
         None => hold,
     }
+}
+
+/// The rates d/M_jj of each velocity at which damping of the joints and of a controller acts, 1/s; or √(k/M_jj), if
+/// that is larger.
+pub fn damping_rates(model: &Model, inputs: &[&dyn Input], theta: &[f64]) -> Result<Vec<f64>> {
+    let M = model.mass_matrix(theta)?;
+    let (mut stiffness, mut damping) = (vec![0.0; model.n()], vec![0.0; model.n()]);
+    inputs.iter().for_each(|input| input.gains(&mut stiffness, &mut damping));
+    damping.iter_mut().zip(model.damping()).for_each(|(sum, own)| *sum += own);
+    let rate = |j: usize| (damping[j] / M[(j, j)]).max((stiffness[j] / M[(j, j)]).sqrt());
+    Ok((0..model.n()).map(rate).collect())
+}
+
+/// The joint with the largest rate, if a step cannot resolve it.
+pub fn stiffest(rates: &[f64], step: f64) -> Option<usize> {
+    let fastest = (0..rates.len()).max_by(|&a, &b| rates[a].total_cmp(&rates[b]));
+    fastest.filter(|&j| rates[j] * step > 1.0)
 }

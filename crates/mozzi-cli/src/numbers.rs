@@ -9,8 +9,10 @@ use std::fmt::Display;
 pub fn number(place: impl Display, text: &str) -> Result<f64> {
     let (x, unit) = with_unit(&place, text)?;
     match unit {
-        Unit::Degrees => Err(Failure::wrong(format!("{place} is `{}`, which is no angle", excerpt(text.trim())))),
-        Unit::Plain | Unit::Radians => Ok(x),
+        Unit::Plain => Ok(x),
+        Unit::Degrees | Unit::Radians => {
+            Err(Failure::wrong(format!("{place} is `{}`, which is no angle", excerpt(text.trim()))))
+        }
     }
 }
 
@@ -186,6 +188,9 @@ mod tests {
         for text in ["1,,2", "[1,2", "1;2", "1, 2 3"] {
             assert!(numbers("--theta", text).is_err(), "{text}");
         }
-        assert!(number("--step", "45deg").is_err() && angles("--theta", "45deg,45deg", &[true, false]).is_err());
+        for text in ["45deg", "2rad", "pi/2"] {
+            assert!(number("--step", text).is_err(), "{text}");
+        }
+        assert!(angles("--theta", "45deg,45deg", &[true, false]).is_err());
     }
 }

@@ -6,8 +6,6 @@ use crate::workload::{self, BINARY, TEXT};
 
 /// Largest number of rows of a motion, all of which are in memory.
 const MOST: f64 = 1e7;
-/// Two rows are farther apart, relative to the step.
-const APART: f64 = 1e-9;
 
 /// The multiples of --step before the end, and the end. A row has so many numbers.
 pub fn times(step: &str, duration: f64, width: usize) -> Result<Vec<f64>> {
@@ -26,8 +24,7 @@ pub fn times(step: &str, duration: f64, width: usize) -> Result<Vec<f64>> {
             step.trim()
         )));
     }
-    let before = (count - APART).ceil().max(0.0) as usize;
-    Ok((0..before).map(|k| k as f64 * step_s).chain([duration]).collect())
+    Ok(mozzi_motion::trajectories::times(step_s, duration))
 }
 
 #[cfg(test)]

@@ -300,8 +300,7 @@ fn entries(
     }
     let joints = match model.joint_names().len() {
         0 => String::new(),
-        1 => ", then 1 joint".to_string(),
-        many => format!(", then {many} joints"),
+        many => format!(", then {}", mozzi_urdf::counted(many, "joint")),
     };
     Err(wrong_count(flag, found.len(), names.len(), &format!("{layout}{joints}")))
 }

@@ -3,7 +3,7 @@
 
 use crate::common;
 
-use common::{assert_close, json, mozzi, numbers, rows, text, times};
+use common::{assert_close, complaint, file, folder, json, mozzi, numbers, rows, text, times};
 
 const STATE: [&str; 8] = [
     "--theta",
@@ -165,6 +165,51 @@ fn terms_show_every_quantity_and_the_stacked_matrices() {
     for (a, b) in rows(&form["mass_matrix"]).iter().zip(rows(&found["mass_matrix"])) {
         assert_close(a, &b, 1e-13);
     }
+}
+
+#[test]
+fn terms_have_one_h_on_every_page() {
+    let all = json(&[&["terms", "ur5"], &STATE[..]].concat());
+    assert!(numbers(&all["tip_forces"]).iter().any(|x| x.abs() > 1.0), "a wrench at the tip");
+    let only = |what: &'static str| [&["terms", "ur5"], &STATE[..], &["--only", what]].concat();
+    for name in ["bias_forces", "task_space_dynamics"] {
+        assert_eq!(json(&only(name))[name], all[name], "{name}");
+    }
+    let line = |page: &str| page.lines().find(|line| line.contains("h = c + g")).map(str::to_string).expect("h");
+    let h: Vec<String> =
+        line(&text(&[&["terms", "ur5"], &STATE[..]].concat())).split_whitespace().map(String::from).collect();
+    // the state stays, though two of its names are short for quantities
+    let one = json(&only("M"));
+    for key in ["theta", "dtheta", "ddtheta", "gravity"] {
+        assert_eq!(one[key], all[key], "{key}");
+    }
+    let (code, why) = complaint(&["terms", "ur5", "--only", "M", "--stacked"]);
+    assert!(code == 1 && why.contains("--stacked has no effect with --only"), "{why}");
+    let page = text(&only("h"));
+    assert!(h[h.len() - 6..].iter().all(|entry| page.contains(entry)), "{h:?} in {page}");
+}
+
+/// A joint with a spring of 1e-6 N m/rad that rests at 0.5 rad, one that follows it, and a rail.
+const SPRINGS: &str = r#"<robot name="s"><link name="b"/><link name="c"/><link name="d"/><link name="e"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="j" type="revolute">
+<parent link="b"/><child link="c"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="99" velocity="9"/>
+<dynamics spring_stiffness="1e-6" spring_reference="0.5"/></joint><joint name="k" type="revolute"><parent link="c"/>
+<child link="d"/><axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="99" velocity="9"/>
+<mimic joint="j" multiplier="2" offset="0.25"/></joint><joint name="rail" type="prismatic"><parent link="d"/><child link="e"/>
+<axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="99" velocity="9"/><dynamics spring_stiffness="200" damping="1e-5"/></joint></robot>"#;
+
+#[test]
+fn pages_in_degrees_have_no_radians_and_small_numbers_are_not_0() {
+    let robot = file(&folder("springs"), "springs.urdf", SPRINGS);
+    let page = text(&["info", &robot, "--deg"]);
+    for words in ["28.648", "2 · j + 14.323945", "1e-6", "1.0000e-5"] {
+        assert!(page.contains(words), "{words} in {page}");
+    }
+    let to = ["trajectory", &robot, "--to", "90,0", "--deg", "--step", "0.5"];
+    let said = String::from_utf8(mozzi(&to).stderr).expect("text");
+    assert!(said.contains("joint limit: `j` reaches 90, beyond its limit 57.29578"), "{said}");
+    let falls = ["simulate", &robot, "--dtheta", "90,0", "--time", "2", "--deg"];
+    assert!(text(&falls).contains("beyond 57.29578"), "{}", text(&falls));
 }
 
 #[test]

@@ -183,6 +183,7 @@ fn wrong_usage_is_told() {
         &[&["ur5", "--quantity", "mass-matrix", "--argument", "wrench=hand"][..], &rest].concat(),
         &["no frame `hand`"],
     );
+    wrong(&[&["ur5", "--quantity", "tip-forces"][..], &rest].concat(), &["of no wrench is 0", "--argument wrench"]);
     wrong(&[&["anymal", "--quantity", "body-jacobian"][..], &rest].concat(), &["end effector"]);
     let folder = folder("codegen_wrong");
     let file = common::file(&folder, "file", "no folder");

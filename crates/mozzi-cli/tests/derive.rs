@@ -110,6 +110,12 @@ fn refusals_tell_their_reason() {
     let (page, said) = (String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr));
     assert!(run.status.code() == Some(1) && page.contains("M") && !page.contains("tau"), "{page}");
     assert!(said.contains("in the spring of the ball joint `neck`") && !said.contains("Derived are"), "{said}");
+    let robot = std::fs::read_to_string(&robot).unwrap().replace(" stiffness='1.5'", "");
+    let robot = crate::common::file(&folder("ball"), "without_spring.xml", &robot);
+    for quantity in ["regressor", "base-parameters"] {
+        let (_, said) = complaint(&["derive", &robot, quantity]);
+        assert!(said.contains("the column of the stiffness of the ball joint `neck`"), "{said}");
+    }
     let module = text(&["derive", "two_link_planar", "M", "c", "g", "--as", "sympy"]);
     assert_eq!(module.matches("\nvalues = {").count(), 1, "{module}");
 }

@@ -105,6 +105,7 @@ fn wrong_conditions() {
         ("joint1 > inf", "expected a finite number"),
         ("> 1", "there is no ``"),
         ("joint-limit", "no joint of `double_pendulum` has a limit of position"),
+        ("tip.z > 5deg", "5deg is an angle, and `tip.z` is a length"),
     ] {
         let (code, said) = complaint(&[&SWING[..], &["--until", condition]].concat());
         assert!(code == 1 && said.contains(words), "{said}");

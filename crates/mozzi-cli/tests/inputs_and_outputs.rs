@@ -32,6 +32,23 @@ fn actuators_of_mjcf_hold_their_pose_unless_they_are_left_out() {
 }
 
 #[test]
+fn standard_output_has_rows_or_json() {
+    for command in [
+        &["simulate", "double_pendulum"][..],
+        &["trajectory", "double_pendulum", "--to", "1,1"],
+        &["excite", "double_pendulum"],
+        &["ik", "ur5", "--in", "goals.csv"],
+    ] {
+        let (code, said) = complaint(&[command, &["--out", "-", "--json"]].concat());
+        assert!(code == 1 && said.contains("--json and --out - both write to standard output"), "{said}");
+    }
+    for (flag, value) in [("--rate", "0"), ("--rate", "-5"), ("--apart", "tip,link1=-1,0.1"), ("--duration", "2rad")] {
+        let (code, said) = complaint(&["excite", "double_pendulum", &format!("{flag}={value}")]);
+        assert!(code == 1 && said.lines().count() == 1, "{flag}: {said}");
+    }
+}
+
+#[test]
 fn velocities_of_via_points_are_met() {
     let folder = folder("via_velocities");
     let via =
@@ -161,7 +178,7 @@ fn contradictory_flags_are_refused() {
     }
     let log = file(&folder("flags_log"), "log.csv", "t,theta_1,tau_1\n0,0,0\n");
     for (flags, expected) in [
-        (&["--total-mass", "2,-1"][..], "--total-mass is 2 kg with a deviation of -1 kg, expected two positive"),
+        (&["--total-mass", "2,-1"][..], "the total mass is 2 kg with a deviation of -1 kg, expected two positive"),
         (&["--total-mass", "2,0"], "expected two positive"),
         (&["--center-in", "rod=0,0,0.5,1,1,0"], "--center-in rod goes from 0.5 to 0 in z"),
         (&["--between", "mass of rod=2,1"], "is 2 to 1, expected the lower first"),

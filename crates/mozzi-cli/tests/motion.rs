@@ -326,7 +326,10 @@ fn wrong_motions() {
         ),
         (r#"{"controller": "pd-gravity", "p": [1, 2], "d": 1}"#, "expected a number, or a list of 6"),
         (r#"{"controller": "pd-gravity", "p": -1, "d": 1}"#, "K_p"),
-        (r#"{"controller": "pd-gravity", "p": 1, "d": 1, "model": "panda"}"#, "8 velocities, expected 6"),
+        (
+            r#"{"controller": "pd-gravity", "p": 1, "d": 1, "model": "panda"}"#,
+            "one with 8 positions, and the robot has 6",
+        ),
     ] {
         let controller = file(&folder, "bad.json", text);
         wrong(&["simulate", "ur5", "--controller", &controller], &["bad.json", words]);

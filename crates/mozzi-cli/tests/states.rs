@@ -112,7 +112,7 @@ fn json_keeps_states_and_urdf_says_that_it_does_not() {
     let output = mozzi(&["convert", &file(&folder, "turned.xml", model), &path("turned.urdf")]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
-    assert!(said.contains("turned.urdf cannot express the robot's named states, which are omitted: qpos0"), "{said}");
+    assert!(said.contains("turned.urdf cannot express the named states `qpos0`"), "{said}");
 }
 
 #[test]
@@ -130,4 +130,19 @@ fn the_page_starts_in_a_state() {
     };
     assert_eq!(start(&[]), state(KEYS, "qpos0")[0]);
     assert_eq!(start(&["--state", "still"]), state(KEYS, "still")[0]);
+}
+
+/// An actuator that explicit methods cannot follow at a millisecond.
+#[test]
+fn stiff_actuators_are_taken_implicitly() {
+    let text = "<mujoco><worldbody><body><joint name='hinge' axis='0 1 0'/>\
+                <geom type='capsule' size='.02' fromto='0 0 0 0 0 -.2' mass='0.1'/></body></worldbody>\
+                <actuator><position joint='hinge' kp='2000' kv='20'/></actuator></mujoco>";
+    let robot = file(&folder("stiff"), "stiff.xml", text);
+    let run = mozzi(&["simulate", &robot, "--theta", "0.3", "--time", "0.5", "--json"]);
+    let notes = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success() && notes.contains("`hinge` is stiff") && notes.contains("moreau"), "{notes}");
+    let found: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let last = found["theta"].as_array().and_then(|rows| rows.last()?[0].as_f64()).expect("a number");
+    assert!(last.abs() < 1e-3, "{last}");
 }

@@ -89,11 +89,11 @@ pub struct Columns<'m> {
     fixed: Vec<(usize, f64)>,
     /// Coulomb friction that is not estimated, by place.
     fixed_coulomb: Vec<f64>,
-    payload: Option<Carried>,
+    pub(crate) payload: Option<Carried>,
     /// By rotor: its rate over each velocity.
     pub(crate) rotors: Vec<Vec<f64>>,
     /// The row of each joint parameter, by place.
-    rows: Vec<core::ops::Range<usize>>,
+    pub(crate) rows: Vec<core::ops::Range<usize>>,
 }
 
 impl<'m> Columns<'m> {

@@ -123,6 +123,13 @@ pub fn identify<'m>(
         let found = options.tenths.to_string();
         return Err(Error::BadOption { option: "the part to fit", found, expected: "1 to 10 tenths".into() });
     }
+    if logs.is_empty() {
+        return Err(Error::BadOption {
+            option: "the number of logs",
+            found: "0".into(),
+            expected: "at least 1".into(),
+        });
+    }
     without_constraints(model)?;
     if options.choice.gains && logs.iter().all(|log| log.payload.is_none()) {
         return Err(Error::BadOption {

@@ -27,7 +27,7 @@ pub fn explain(t: &[f64], row: usize) -> String {
         );
     }
     let mut forward: Vec<f64> = steps().filter(|step| *step > 0.0).collect();
-    forward.sort_by(f64::total_cmp);
+    forward.sort_unstable_by(f64::total_cmp);
     let usual = forward.get(forward.len() / 2).copied().unwrap_or(0.0);
     let (count, most) =
         steps().filter(|step| *step < 0.0).fold((0, 0.0_f64), |(k, most), step| (k + 1, most.max(-step)));

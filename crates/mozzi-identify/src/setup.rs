@@ -59,6 +59,12 @@ impl<'m> Setup<'m> {
             let expected = "a positive number, such as 0.3".to_string();
             return Err(Error::BadOption { option: "the prior's weight", found: gamma.to_string(), expected });
         }
+        if let Some([mass, deviation]) = limits.total_mass
+            && !(mass > 0.0 && deviation > 0.0 && mass.is_finite() && deviation.is_finite())
+        {
+            let found = format!("{mass} kg with a deviation of {deviation} kg");
+            return Err(Error::BadOption { option: "the total mass", found, expected: "two positive numbers".into() });
+        }
         let columns = Columns::new(model, choice)?;
         let (P, n) = (columns.count(), model.n().max(1));
         let names = columns.unknowns.iter().map(|unknown| unknown.name.clone()).collect();
@@ -104,6 +110,8 @@ impl<'m> Setup<'m> {
         if let Some([mass, deviation]) = self.total_mass {
             let P = self.columns.count();
             let mut row = DMatrix::zeros(1, P + 1);
+            // the data's cost is that of one independent sample
+            let deviation = deviation * (evidence.samples() as f64 * evidence.independent).max(1.0).sqrt();
             self.problem.bodies.iter().for_each(|(first, ..)| row[(0, *first)] = 1.0 / deviation);
             row[(0, P)] = mass / deviation;
             data.push(row, 0);

@@ -37,27 +37,21 @@ fn each<'py, const K: usize>(
     let slices = given.iter().map(Numbers::slice::<f64>).collect::<PyResult<Vec<_>>>()?;
     let tail = |k: usize| &given[k].shape[leading.len()..];
     let states: usize = leading.iter().product();
-    let mut out: Option<Fresh<f64>> = None;
-    for index in 0..states {
-        let part = |k: usize| {
-            let length: usize = tail(k).iter().product();
-            &slices[k][index * length..][..length]
-        };
+    // without states one of halves, whose quaternions are units, shows the lengths that are wrong and the shape
+    let halves: Vec<Vec<f64>> = (0..given.len()).map(|k| vec![0.5; tail(k).iter().product()]).collect();
+    let converted = |index: usize| {
+        let part =
+            |k: usize| if states == 0 { &halves[k] } else { &slices[k][index * halves[k].len()..][..halves[k].len()] };
         let matrix = table.map(|_| DMatrix::from_row_slice(tail(K)[0], tail(K)[1], part(K)));
-        let result = f(std::array::from_fn(part), matrix).map_err(|error| of_state(error, index, &leading))?;
-        let shape = if is_matrix { vec![result.nrows(), result.ncols()] } else { vec![result.nrows()] };
-        if out.is_none() {
-            out = Some(Fresh::new(py, &[&leading[..], &shape].concat())?);
-        }
-        let length = result.len();
-        if let Some(out) = &mut out {
-            by_rows(&result, &mut out.numbers()[index * length..][..length]);
-        }
+        f(std::array::from_fn(part), matrix).map_err(|error| of_state(error, index, &leading))
+    };
+    let first = converted(0)?;
+    let shape = if is_matrix { vec![first.nrows(), first.ncols()] } else { vec![first.nrows()] };
+    let mut out = Fresh::<f64>::new(py, &[&leading[..], &shape].concat())?;
+    for (index, row) in out.numbers().chunks_exact_mut(first.len().max(1)).enumerate() {
+        by_rows(&converted(index)?, row);
     }
-    match out {
-        Some(out) => Ok(out.into_array()),
-        None => Ok(given.swap_remove(given.len() - 1).array), // no state: the result is empty, like the input
-    }
+    Ok(out.into_array())
 }
 
 fn column(x: Result<DVector<f64>, Error>) -> Result<DMatrix<f64>, Error> {
@@ -111,9 +105,14 @@ impl Pinocchio {
     #[new]
     fn new(model: &PyModel, joints: Option<(Vec<String>, Vec<usize>)>) -> PyResult<Self> {
         let model = &model.robot().model;
-        let Some((names, nqs)) = joints else { return Ok(Pinocchio(conventions::Pinocchio::new(model))) };
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        conventions::Pinocchio::with_joints(model, &names, &nqs).map(Pinocchio).map_err(of_model)
+        let made = match joints {
+            None => conventions::Pinocchio::new(model),
+            Some((names, nqs)) => {
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                conventions::Pinocchio::with_joints(model, &names, &nqs)
+            }
+        };
+        made.map(Pinocchio).map_err(of_model)
     }
 
     /// Index of mozzi's joint for each of Pinocchio's joints.

@@ -153,7 +153,7 @@ pub fn _identify<'py>(
     };
     let (logs, validate) = (read(&logs)?, read(&validate)?);
     let cutoff = match option::<f64>(options, "cutoff")? {
-        Some(f) if f.is_infinite() => Cutoff::None,
+        Some(f64::INFINITY) => Cutoff::None,
         Some(f) => Cutoff::Hz(f),
         None => Cutoff::Automatic,
     };
@@ -250,15 +250,13 @@ pub fn _excite<'py>(
     let found = py.detach(|| excite(robot, &settings, &stop));
     interrupt.check()?;
     let found = found.map_err(of_identification)?;
-    let count = (duration / step).round() as usize;
-    let mut tables: [Vec<f64>; 4] = Default::default();
-    for k in 0..=count {
-        let t = (k as f64 * step).min(duration);
-        tables[0].push(t);
-        tables[1..].iter_mut().zip(found.at(t)).for_each(|(table, row)| table.extend(row));
+    let t = mozzi_motion::trajectories::times(step, duration);
+    let mut tables: [Vec<f64>; 3] = Default::default();
+    for &t in &t {
+        tables.iter_mut().zip(found.at(t)).for_each(|(table, row)| table.extend(row));
     }
-    let [t, theta, dtheta, ddtheta] = tables;
-    let shape = [count + 1, n];
+    let [theta, dtheta, ddtheta] = tables;
+    let shape = [t.len(), n];
     let arrays = [
         array(py, &shape[..1], t)?,
         array(py, &shape, theta)?,

@@ -21,11 +21,17 @@ type Found<'py> = PyResult<Bound<'py, PyAny>>;
 
 /// log T. At half a turn, which has two solutions, the package's: the last component of ω that is not 0 is positive.
 fn logarithm(T: SE3) -> Twist {
+    let V @ Twist { w, v } = T.log();
     let R = T.R.matrix().rows();
     let is_half_turn = (R[0][0] + R[1][1] + R[2][2] - 1.0) / 2.0 <= -1.0;
-    let is_theirs = |V: &Twist| V.w.0.into_iter().rfind(|x| x.abs() > 1e-3).is_some_and(|last| last > 0.0);
-    let (one, other) = (T.log(), -T.inverse().log());
-    if is_half_turn && !is_theirs(&one) && is_theirs(&other) { other } else { one }
+    let theta = w.norm();
+    let is_near_zero = |x: f64| 2.0 * (x / theta).powi(2) < 1e-6; // the package's, of the diagonal of 1 + R
+    if !is_half_turn || w.0.into_iter().rfind(|&x| !is_near_zero(x)).is_none_or(|last| last > 0.0) {
+        return V;
+    }
+    // 2π − θ the other way about the same axis, along which it moves as far
+    let (other, along) = ((theta - core::f64::consts::TAU) / theta, w * (w.dot(v) / (theta * theta)));
+    Twist { w: w * other, v: (v - along) * other + along }
 }
 
 fn hat(V: Twist) -> [[f64; 4]; 4] {

@@ -155,3 +155,17 @@ def test_errors(ur5):
 
 def test_examples_of_the_documentation():
     assert doctest.testmod(conventions).failed == 0
+
+
+def test_no_states_give_no_states_of_the_others_shape():
+    panda, anymal = mozzi.models.panda(), mozzi.models.anymal(floating=True)
+    pinocchio, theirs = conventions.Pinocchio(anymal), conventions.MuJoCo(anymal)
+    n, nq = anymal.n, anymal.nq
+    circles = conventions.Pinocchio(mozzi.models.furuta_pendulum())
+    assert circles.configuration(np.zeros((0, 2))).shape == (0, circles.nq)
+    assert pinocchio.mass_matrix(np.zeros((2, 0, n, n))).shape == (2, 0, n, n)
+    assert conventions.MuJoCo(panda).configuration(np.zeros((0, 8))).shape == (0, 9)
+    bias = theirs.from_bias_forces(np.zeros((0, nq)), np.zeros((0, n)), np.zeros((0, n, n)), np.zeros((0, n)))
+    assert bias.shape == (0, n)
+    with pytest.raises(ValueError, match="q has 99 entries, expected 19"):
+        pinocchio.from_configuration(np.zeros((0, 99)))

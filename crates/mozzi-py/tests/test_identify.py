@@ -90,6 +90,9 @@ def test_a_motion_excites_within_limits(arm):
     assert found.condition < found.condition_of_random
     assert np.abs(found.dtheta).max() <= 2.02 and np.abs(found.ddtheta).max() <= 8.1
     assert np.allclose(found.dtheta[[0, -1]], 0, atol=1e-9)
+    # the last row is the end, whatever the step
+    uneven = mozzi.excite(arm, 4.0, harmonics=2, step=0.3)
+    assert uneven.t[-1] == 4.0 and np.allclose(uneven.dtheta[-1], 0, atol=1e-9)
 
 
 MJCF = """<mujoco model="pendulum">
@@ -189,6 +192,7 @@ def test_wrong_options_are_named(ur5):
     for wrong, words in [
         ({"acceleration": "Spline"}, "acceleration is 'Spline', expected 'differences' or 'spline'"),
         ({"total_mass": 20}, "total_mass is 20, expected a mass and its standard deviation"),
+        ({"total_mass": (-1, 0.1)}, "the total mass is -1 kg with a deviation of 0.1 kg, expected two positive numbers"),
         ({"fit": 2.0}, "fit is 2, expected a part of the log"),
         ({"fit": 0.72}, "fit is 0.72, expected a part of the log: 0.1, 0.2"),
         ({"payload": "tool0"}, 'payload is .tool0., which only="payload" estimates'),

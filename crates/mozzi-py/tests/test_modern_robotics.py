@@ -134,6 +134,20 @@ def test_half_turns_have_the_packages_sign(random):
         if theirs.MatrixLog3(R).any():  # by rounding the package may find no turn at all
             same("MatrixLog3", R, tolerance=1e-7)
             same("MatrixLog6", T, tolerance=1e-7)
+    compared = 0
+    for axis in random.normal(size=(200, 3)):  # R has rounding, and is not symmetric
+        R = theirs.MatrixExp3(theirs.VecToso3(np.pi * axis / np.linalg.norm(axis)))
+        T = theirs.RpToTrans(R, [1, 2, 3])
+        assert_close(mr.MatrixExp6(mr.MatrixLog6(T)), T)
+        if (np.trace(R) - 1) / 2 <= -1:  # else the package's axis is rounding
+            compared += 1
+            same("MatrixLog3", R, tolerance=1e-7)
+            with np.errstate(invalid="ignore"):
+                is_number = np.isfinite(theirs.MatrixLog6(T)).all()  # an arc cosine of less than -1 is none
+            if is_number:
+                same("MatrixLog6", T, tolerance=1e-7)
+                same("ScrewTrajectory", np.eye(4), T, 1, 3, 3, tolerance=1e-7)
+    assert compared > 50
 
 
 def test_rotations_below_near_zero_are_computed():

@@ -6,7 +6,7 @@ use crate::drift::Drift;
 use crate::driven::Driven;
 use crate::events::stops::Stops;
 use crate::events::{Event, Occurrence, first_zero, parts};
-use crate::impulses::{Impulses, Key};
+use crate::impulses::Impulses;
 use crate::methods::dense::Dense;
 use crate::methods::dormand_prince::DormandPrince;
 use crate::methods::midpoint::Midpoint;
@@ -62,8 +62,6 @@ pub(crate) struct Course<'r> {
     pub driven: Driven<'r>,
     /// Dry friction, contacts, and stops next to them.
     pub impulses: Option<Box<Impulses<'r>>>,
-    /// The contacts that carry, and whether they stick.
-    pub(crate) touching: Vec<(Key, bool)>,
     pub stops: Stops,
     stall: Stall,
     pub(crate) motion: Motion<f64, 3>,
@@ -128,7 +126,6 @@ impl<'r> Course<'r> {
             integrator,
             driven,
             impulses,
-            touching: Vec::new(),
             stops,
             stall: Stall::new(&options),
             from: State::of(&motion),
@@ -234,7 +231,11 @@ impl<'r> Course<'r> {
         let (h, end) = step_to(step, from.t, *duration);
         if self.impulses.is_some() {
             self.impulse_step(h, end)?;
-            return Ok(Dense::hermite(self.driven.model, &self.from, &State::of(&self.motion)));
+            // the powers are those of the step as a whole
+            let (mut from, mut to) = (self.from.clone(), State::of(&self.motion));
+            from.powers = core::array::from_fn(|k| (to.works[k] - from.works[k]) / (to.t - from.t));
+            to.powers = from.powers;
+            return Ok(Dense::hermite(self.driven.model, &from, &to));
         }
         match integrator {
             Integrator::MoreauJean(_) => {} // which always has impulses
@@ -286,6 +287,7 @@ impl<'r> Course<'r> {
         while !self.is_closed && self.next < self.options.steps && self.options.time(self.next) < end {
             let mut row = dense.at(self.driven.model, self.options.time(self.next));
             self.driven.close(row.t, &mut row.theta, &mut row.dtheta)?;
+            self.stops.report_at(row.t, &row.theta); // adaptive steps go to a limit and back
             match &self.impulses {
                 Some(_) => {
                     row.ddtheta.copy_from_slice(&self.motion.ddtheta);

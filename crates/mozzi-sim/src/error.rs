@@ -134,14 +134,14 @@ impl fmt::Display for Error {
             Error::Jumped { joint, change, time } => write!(
                 f,
                 "the loops close at t = {time} s only if the velocity of `{joint}` jumps by {change:.3e}: the mechanism passes a \
-                 change point, where it could go on in two ways, or the step is too long; `rk4` with shorter steps errs least"
+                 change point, where it could go on in two ways, or the step is too long: a shorter one may do"
             ),
             Error::Drifted { loops, drift, kinetic, time, steps } => {
                 let [drift, kinetic, time] = [*drift, *kinetic, *time].map(short);
                 write!(
                     f,
                     "the energy is off by {drift} J until t = {time} s, and the largest kinetic energy is {kinetic} J: the loops {loops} \
-                     need shorter steps than {} s; try {} s, or a method of higher order",
+                     need shorter steps than {} s; try {} s, unless they pass a change point, where no step is short enough",
                     steps[0], steps[1]
                 )
             }

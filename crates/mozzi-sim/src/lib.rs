@@ -25,9 +25,11 @@
 //! All methods integrate on SE(3) if the base floats, and all run in one loop, [`Simulation`]. It locates [`Event`]s,
 //! zeros of functions of (t, θ, θ̇), on the polynomial between two steps, treats the joints' limits by a [`Policy`],
 //! and passes each row to a [`Recorder`], so that a long motion need not be kept in memory.
-#![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(not(test), no_std)]
 
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 mod closing;
 mod contacts;

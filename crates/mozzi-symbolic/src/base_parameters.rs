@@ -5,7 +5,7 @@ use crate::angles;
 use crate::atom::{Atom, Class, Id, Name};
 use crate::dependence::{dependence, file_value};
 use crate::derivation::{Derivation, Formula};
-use crate::derive::{Collect, Options, described, finished, written};
+use crate::derive::{Collect, Options, described, explained, finished, written};
 use crate::error::{Error, LONGEST, LONGEST_IN_ALL};
 use crate::expression::Expression;
 use crate::kernel::{Kernel, check_fault};
@@ -80,6 +80,10 @@ fn parameters(model: &Model, symbolic: &Model<Symbol>) -> Vec<Meaning> {
 /// # Errors
 /// [`Error`] if the regressor leaves the polynomials or is too long, or if Y_b π_b differs from the kernel's Y π.
 pub fn base_parameters(model: &Model, text: Option<&str>, options: &Options) -> Result<Derivation, Error> {
+    found(model, text, options).map_err(|error| explained(error, model))
+}
+
+fn found(model: &Model, text: Option<&str>, options: &Options) -> Result<Derivation, Error> {
     let Symbols { lengths, gravity, .. } = options.symbols;
     let symbols = Symbols { lengths, gravity, ..Symbols::NONE };
     let (description, mut known) = described(model, text, &Options { symbols, ..*options })?;

@@ -169,7 +169,7 @@ impl Graph {
             }
             let mut frequent: Vec<(usize, Pair)> =
                 counts.into_iter().filter(|(_, count)| *count > 1).map(|(pair, count)| (count, pair)).collect();
-            frequent.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
+            frequent.sort_unstable_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
             let Some(&(most, _)) = frequent.first() else { return };
             // all pairs of this count, as far as they do not meet in a node
             let mut touched = vec![false; self.nodes.len()];

@@ -19,7 +19,7 @@ use crate::rational::Rational;
 use crate::sines::shortened;
 use crate::symbol::{Symbol, end, start, with_table};
 use crate::table::Table;
-use mozzi::model::description::{Joint, JointKind};
+use mozzi::model::description::JointKind;
 use mozzi::quantities::Query;
 use mozzi::{Description, Model};
 
@@ -71,19 +71,22 @@ pub(crate) fn described(
 /// # Errors
 /// [`Error`] if the kernel leaves the polynomials, or an expression does not equal the kernel.
 pub fn derive(model: &Model, text: Option<&str>, query: Query, options: &Options) -> Result<Derivation, Error> {
-    derived(model, text, query, options).map_err(|error| match (error, of_a_ball(model)) {
+    derived(model, text, query, options).map_err(|error| explained(error, model))
+}
+
+/// A root is that of a ball: its spring, and the column of its stiffness, are along the rotation vector of its
+/// quaternion.
+pub(crate) fn explained(error: Error, model: &Model) -> Error {
+    let balls = || model.joints().filter(|joint| matches!(joint.kind, JointKind::Ball(_)));
+    let ball = balls().find(|joint| joint.stiffness != 0.0).or_else(|| balls().next());
+    match (error, ball) {
         (Error::NotPolynomial { quantity, what }, Some(joint)) if what.contains("root") => {
-            let what = format!("{what}, the length of the rotation vector in the spring of the ball joint `{joint}`");
+            let of = if joint.stiffness != 0.0 { "in the spring" } else { "in the column of the stiffness" };
+            let what = format!("{what}, the length of the rotation vector {of} of the ball joint `{}`", joint.name);
             Error::NotPolynomial { quantity, what }
         }
         (error, _) => error,
-    })
-}
-
-/// A ball joint with a spring, which turns back along the rotation vector of its quaternion.
-fn of_a_ball(model: &Model) -> Option<&str> {
-    let is_sprung = |joint: &&Joint| joint.stiffness != 0.0 && matches!(joint.kind, JointKind::Ball(_));
-    model.joints().find(is_sprung).map(|joint| joint.name.as_str())
+    }
 }
 
 fn derived(model: &Model, text: Option<&str>, query: Query, options: &Options) -> Result<Derivation, Error> {

@@ -57,7 +57,7 @@ pub(crate) fn key(table: &Table, id: Id) -> Key {
 /// For each atom its place in the order: a smaller number is printed first.
 pub(crate) fn ranks(table: &Table) -> Vec<usize> {
     let mut ids: Vec<(Key, Id)> = (0..table.len() as Id).map(|id| (key(table, id), id)).collect();
-    ids.sort();
+    ids.sort_unstable();
     let mut ranks = vec![0; ids.len()];
     for (rank, (_, id)) in ids.iter().enumerate() {
         ranks[*id as usize] = rank;

@@ -83,7 +83,7 @@ pub use settings::{Policy, Settings};
 pub use text::expansion::{expanded, expanded_with_warnings, taken_from_host};
 pub use urdf::expressible::expressible;
 pub use urdf::write::{NotUrdf, only_ball_constraints, write};
-pub use written::{NotWritten, Written};
+pub use written::{NotWritten, Written, chosen_end_effector, named_states};
 
 use mozzi::{Description, Model, SO3};
 use report::finding::Findings;

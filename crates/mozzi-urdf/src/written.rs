@@ -1,5 +1,6 @@
 //! The result of writing a robot in a format.
 
+use mozzi::Description;
 use mozzi::model::description::Joint;
 use std::fmt;
 
@@ -44,6 +45,16 @@ pub(crate) fn names_of(what: &str, names: &[&str]) -> Option<String> {
         1 => Some(format!("{what} {}", shown.join(", "))),
         count => Some(format!("{what} {} ({count})", shown.join(", "))),
     }
+}
+
+/// The choice of the end effector, as the loss of a format without it.
+pub fn chosen_end_effector(robot: &Description) -> Option<String> {
+    robot.end_effector.as_ref().map(|name| format!("the choice of the end effector, `{name}`"))
+}
+
+/// The robot's named states, as the loss of a format without them: "the named states `home`".
+pub fn named_states(robot: &Description) -> Option<String> {
+    names_of("the named states", &robot.states.iter().map(|state| state.name.as_str()).collect::<Vec<_>>())
 }
 
 /// The forces and the rotor of a free joint, for formats without them: "joint `f`: damping 1 of a free joint".

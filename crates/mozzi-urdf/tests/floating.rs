@@ -200,7 +200,7 @@ fn compare(oracle: &Value, models: &[Model; 2]) -> Worst {
         let nqs: Vec<usize> = vector(&oracle["nqs"]).iter().map(|&nq| nq as usize).collect();
         let theirs = Pinocchio::with_joints(&models[0], &names, &nqs).unwrap();
         // Pinocchio's reading of the file is predicted without it
-        let guessed = Pinocchio::new(&models[0]);
+        let guessed = Pinocchio::new(&models[0]).unwrap();
         assert_eq!(guessed.joints(), theirs.joints(), "{}", oracle["robot"]);
         // four wheels of Centauro are `revolute` with limits that hold no bound: continuous here, one position there
         let unlike = if oracle["robot"] == "centauro" { 4 } else { 0 };

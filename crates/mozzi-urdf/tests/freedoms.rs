@@ -1,6 +1,7 @@
 //! Joints of several degrees of freedom: floating bases and planar joints, and the joints that replace them.
 #![allow(clippy::unwrap_used)]
 
+use mozzi::conventions::Pinocchio;
 use mozzi::model::description::JointKind;
 use mozzi::{Base, Twist};
 use mozzi_urdf::{Policy, parse_with};
@@ -57,6 +58,19 @@ fn a_planar_joint_is_two_slides_and_a_turn() {
         let again = model.forward_dynamics(&at, &[0.1; 4], tau.as_slice(), &model.environment()).unwrap();
         assert!(again.iter().all(|x| (x - 0.5).abs() < 1e-13), "{again}");
     }
+}
+
+/// With the axis z, q would have Pinocchio's form, but velocities, forces and matrices would not.
+#[test]
+fn pinocchios_planar_joint_is_refused_by_name() {
+    let joint = "<joint name='j' type='planar'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>";
+    let model = robot(joint).build().unwrap();
+    for made in [Pinocchio::new(&model), Pinocchio::with_joints(&model, &["j", "hinge"], &[4, 2])] {
+        let message = made.unwrap_err().to_string();
+        assert!(message.contains("planar joint `j`") && message.contains("axes that turn"), "{message}");
+    }
+    let parts = Pinocchio::with_joints(&model, &["j.x", "j.y", "j.theta", "hinge"], &[1, 1, 2, 2]).unwrap();
+    assert_eq!(parts.nq(), 6);
 }
 
 #[test]

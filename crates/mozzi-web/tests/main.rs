@@ -3,3 +3,4 @@
 
 mod interface;
 mod play;
+mod three_links;

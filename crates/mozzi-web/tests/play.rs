@@ -12,15 +12,15 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 /// An open robot, with what the page is told.
-fn opened(session: &mut Session, file: &str, text: &str) -> (usize, Value) {
+pub fn opened(session: &mut Session, file: &str, text: &str) -> (usize, Value) {
     session.open(&json!({ "file": file, "files": { file: text } }).to_string()).expect("sound")
 }
 
-fn input<'r>(robot: &'r mut Robot, name: &str) -> &'r mut [f64] {
+pub fn input<'r>(robot: &'r mut Robot, name: &str) -> &'r mut [f64] {
     robot.input(INPUTS.iter().position(|input| input.name == name).expect("an input")).expect("an input")
 }
 
-fn play(robot: &mut Robot, command: Value) -> Value {
+pub fn play(robot: &mut Robot, command: Value) -> Value {
     robot.play(&command.to_string()).expect("a command")
 }
 

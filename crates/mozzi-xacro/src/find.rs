@@ -80,7 +80,7 @@ fn in_folder(folder: &Path, name: &str) -> Option<Vec<PathBuf>> {
     let folders = |folder: &Path| {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().take(MOST_ENTRIES);
         let mut folders: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-        folders.sort();
+        folders.sort_unstable();
         folders
     };
     let beside = folders(folder);

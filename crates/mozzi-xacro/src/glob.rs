@@ -45,7 +45,7 @@ pub(crate) fn files(pattern: &str) -> Result<Vec<PathBuf>> {
         }
         found = next;
     }
-    found.sort();
+    found.sort_unstable();
     Ok(found.into_iter().map(PathBuf::from).collect())
 }
 

@@ -87,7 +87,7 @@ impl Reader<'_> {
                 let close = end("?>", 2);
                 let inner = &rest[2..close];
                 // the XML declaration is written again
-                if !inner.starts_with("xml ") {
+                if inner.split_ascii_whitespace().next() != Some("xml") {
                     self.add(Content::Instruction(newlines(inner).into()), at..at + close)?;
                 }
                 at += (close + 2).min(rest.len());

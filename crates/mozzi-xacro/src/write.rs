@@ -64,7 +64,7 @@ impl Writer<'_> {
                 self.text.push('<');
                 self.piece(|text| *text += name, &node.place);
                 let mut sorted: Vec<_> = attributes.iter().collect();
-                sorted.sort_by(|a, b| a.name.cmp(&b.name));
+                sorted.sort_unstable_by(|a, b| a.name.cmp(&b.name));
                 for attribute in sorted {
                     self.text.push(' ');
                     let start = self.text.len();

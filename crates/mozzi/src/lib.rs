@@ -31,9 +31,11 @@
 //!
 //! Six-vectors are angular first: twists (ω, v), wrenches (m, f). SI units. Applied wrenches are those of the robot on
 //! the environment. Without the default feature `std` the crate is `no_std` with `alloc`, and uses `libm`.
-#![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(not(test), no_std)]
 
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 pub mod accuracy;
 pub mod constraints;

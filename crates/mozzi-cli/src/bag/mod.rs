@@ -131,7 +131,7 @@ fn parts(file: &str) -> Result<Vec<String>> {
         let stem = name.split(['/', '\\']).next_back().unwrap_or_default().split('.').next().unwrap_or_default();
         stem.rsplit('_').next().and_then(|digits| digits.parse::<u64>().ok())
     };
-    found.sort_by(|a, b| (number(a), a).cmp(&(number(b), b)));
+    found.sort_unstable_by(|a, b| (number(a), a).cmp(&(number(b), b)));
     if found.is_empty() {
         return Err(Failure::wrong(format!(
             "{file} is a folder without .db3 or .mcap, expected a log or a bag of rosbag2"

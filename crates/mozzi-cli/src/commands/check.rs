@@ -8,7 +8,7 @@ use crate::{input, json as pretty, robot_json, sarif};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_urdf::json::Misplaced;
-use mozzi_urdf::{Consequence, Diagnostic, Severity};
+use mozzi_urdf::{Consequence, Diagnostic, Severity, counted};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -157,8 +157,7 @@ fn json_robot(arguments: &CheckArguments, name_or_path: &str) -> Result<String> 
     all.for_each(|(severity, problem)| failure::write(&format!("{name}: {severity}: {problem}\n")));
     match errors.len() {
         0 => sound(name, warnings.len(), &robot.build()?),
-        1 => Err(Failure::wrong(format!("{name} is refused: 1 error"))),
-        many => Err(Failure::wrong(format!("{name} is refused: {many} errors"))),
+        many => Err(Failure::wrong(format!("{name} is refused: {}", counted(many, "error")))),
     }
 }
 
@@ -166,8 +165,7 @@ fn json_robot(arguments: &CheckArguments, name_or_path: &str) -> Result<String> 
 fn sound(name: &str, warnings: usize, model: &Model) -> Result<String> {
     let count = match warnings {
         0 => "no warnings".to_string(),
-        1 => "1 warning".to_string(),
-        many => format!("{many} warnings"),
+        many => counted(many, "warning"),
     };
     failure::write(&format!("{name} is valid, {count}: {}\n", info::headline(model)));
     Ok(String::new())

@@ -4,6 +4,7 @@ use super::assemble::check_constraints;
 use super::info;
 use crate::failure::{Failure, Result};
 use crate::json;
+use crate::missing;
 use crate::quantity::{hyphenated, quantity};
 use crate::robot::{RobotArguments, end_effector};
 use crate::state::check_frames;
@@ -13,7 +14,7 @@ use crate::workload::count;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use mozzi::Model;
-use mozzi::quantities::{LIST, Of, Query};
+use mozzi::quantities::{LIST, Of, Query, Uses};
 use mozzi_engine::{
     Arguments, Count, Derivative, Kernel, LONGEST_TEXT, Language, Number, Precision, Refusal, Shape, SourceFile, emit,
     emit_casadi, estimate, record_quantity,
@@ -147,9 +148,17 @@ pub fn run(arguments: &CodegenArguments) -> Result<String> {
     let rows = arguments.task.rows()?;
     let subject = |query| arguments.task.subject(query, &rows, &model);
     let queries = queries.into_iter().map(subject).collect::<Result<Vec<Query>>>()?;
-    if is_named {
+    let queries = if is_named {
+        let is_nothing = |query: &&Query| query.declaration().uses == Uses::WRENCHES && frames.is_empty();
+        if let Some(query) = queries.iter().find(is_nothing) {
+            let name = hyphenated(query.name());
+            return Err(Failure::wrong(format!("{name} of no wrench is 0: --argument wrench=FRAME gives it one")));
+        }
         queries.iter().try_for_each(|query| check_task(&model, query))?;
-    }
+        queries
+    } else {
+        missing::those_of(queries, &model)
+    };
     if !arguments.allow_large {
         queries.iter().try_for_each(|&query| check_length(&model, query))?;
     }
@@ -252,7 +261,7 @@ fn explain(page: &mut Page, model: &Model, works: &[Work]) {
     let lanes: Vec<Shape> = works[0].code.iter().map(|(shape, _)| *shape).collect();
     page.line(info::headline(model));
     page.line("Recorded with this robot's constants: zeros, ones and common subexpressions are folded away.");
-    let states = |shape: &Shape| format!("{} state{}", shape.lanes(), if shape.lanes() == 1 { "" } else { "s" });
+    let states = |shape: &Shape| mozzi_urdf::counted(shape.lanes(), "state");
     let title = format!("flops, and bytes of machine code ({})", lanes[1].instruction_set());
     let mut rows = vec![["", "before", "after", "left", "div", "sqrt", "sin, cos"].map(String::from).to_vec()];
     rows[0].extend(lanes.iter().map(states));

@@ -13,6 +13,7 @@ use mozzi_report::compare::files::{RobotFile, compare_files};
 use mozzi_report::compare::{Options, Source, ask, compare, find_python};
 use mozzi_urdf::expanded;
 use mozzi_urdf::geometry::geometry_with;
+use mozzi_urdf::mjcf;
 use std::path::Path;
 use std::time::Duration;
 
@@ -24,7 +25,7 @@ pub struct CompareArguments {
     /// is 0 only if moving joints, limits, couplings, named frames, starts and states are the same, and the forces
     /// agree to --tolerance
     other: Option<String>,
-    /// With two files: the largest difference of M and of the forces, as a part of the largest number
+    /// With two files: the largest difference of M, forces, limits and places, as a part of each joint's largest number
     #[arg(long, value_name = "X", default_value = "1e-9", requires = "other")]
     tolerance: String,
     /// Python interpreter with pin or mujoco installed [default: that of the active virtual environment, else python3]
@@ -89,14 +90,21 @@ fn two_files(arguments: &CompareArguments, other: &str) -> Result<String> {
         workload::at_most(MOST, &model, "of one that is compared")?;
         let text = input::robot_file(name).unwrap_or_default(); // none of an embedded robot, a URDF
         let (is_json, is_sdf) = (robot_json::is_json(name), mozzi_urdf::sdf::is_sdf(&text));
-        let has_start = is_json || is_sdf || mozzi_urdf::mjcf::is_mjcf(&text);
+        let is_mjcf = mjcf::is_mjcf(&text);
+        let (has_start, has_rates) = (is_json || is_sdf || is_mjcf, !is_mjcf);
         // those of other formats are not read
         let has_shapes = name != "-" && !is_json && !is_sdf;
         let shapes = has_shapes.then(|| geometry_with(name, &arguments.policy.settings().xacro).ok());
         let shapes = shapes.flatten().map(|all| all.shapes);
         let shown = short(name).filter(|_| is_short).unwrap_or_else(|| input::name(name).to_string());
         let path = (name != "-").then(|| Path::new(name).to_path_buf());
-        Ok(RobotFile { name: shown, model, inertial_axes, shapes, has_start, path })
+        let xacro = &arguments.policy.settings().xacro;
+        let actuation = match name {
+            _ if !is_mjcf => None,
+            "-" => Some(mjcf::actuation_of(None, input::name(name), text.as_bytes(), xacro)),
+            name => Some(mjcf::actuation(name, xacro)?),
+        };
+        Ok(RobotFile { name: shown, model, inertial_axes, shapes, has_start, has_rates, actuation, path })
     };
     let comparison =
         compare_files(&file(&arguments.model)?, &file(other)?, arguments.states.into(), arguments.seed, tolerance)?;

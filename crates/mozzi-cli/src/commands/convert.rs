@@ -1,9 +1,9 @@
 //! `mozzi convert`: the same robot in another file, or an edited one.
 
+mod losses;
 pub mod tree;
 pub mod urdf;
 
-use super::screws;
 use crate::edits::EditArguments;
 use crate::failure::{self, Failure, Result};
 use crate::input;
@@ -69,25 +69,17 @@ pub fn run(arguments: &ConvertArguments) -> Result<String> {
     actuators(input, output, &arguments.policy.settings())?;
     let text = match suffix {
         "urdf" => urdf::text(input, output, model.description(), &arguments.leave_out, arguments.policy.settings())?,
-        "sdf" | "xml" => tree::text(input, output, suffix, model.description(), &arguments.policy.settings())?,
-        "json" => {
+        "sdf" | "xml" | "py" => tree::text(input, output, suffix, &model, &arguments.policy.settings())?,
+        _ => {
             urdf::shapes(input, output, &arguments.policy.settings())?;
             robot_json::write(&model)
         }
-        _ => screws::python(&model)?,
     };
     if file == "-" {
         output::to_stdout(&text)?;
     } else {
         let to = if arguments.in_place { Output::replacing(file)? } else { Output::create(file)? };
         to.write(|to| to.write_all(text.as_bytes()))?;
-    }
-    let states: Vec<&str> = model.state_names().collect();
-    if ["urdf", "py"].contains(&suffix) && !states.is_empty() {
-        failure::note(&format!(
-            "{output} cannot express the robot's named states, which are omitted: {}",
-            states.join(", ")
-        ));
     }
     let written = format!("{output}: {}\n", super::info::headline(&model));
     if file == "-" {
@@ -106,12 +98,10 @@ fn actuators(input: &str, output: &str, settings: &Settings) -> Result<()> {
         }
         _ => mjcf::actuation(input, &settings.xacro)?,
     };
-    let count = match actuation.actuators.len() {
-        0 => return Ok(()),
-        1 => "actuator".to_string(),
-        count => format!("{count} actuators"),
-    };
-    let count = format!("the {count} of {}", input::name(input));
+    if actuation.actuators.is_empty() {
+        return Ok(());
+    }
+    let count = format!("the {} of {}", losses::of_these(actuation.actuators.len(), "actuator"), input::name(input));
     if settings.policy == Policy::Strict {
         return Err(Failure::wrong(format!("{output} is not written: --strict, and it cannot express {count}")));
     }

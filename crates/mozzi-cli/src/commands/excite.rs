@@ -9,7 +9,7 @@ use crate::numbers::{self, array, number, one_or_each};
 use crate::robot::FileArguments;
 use crate::rows;
 use crate::tables::format::Format;
-use crate::text::{Page, table};
+use crate::text::{Page, digits, table};
 use crate::{interrupt, json};
 use clap::{Args, ValueEnum};
 use mozzi::Model;
@@ -94,6 +94,7 @@ enum Place {
 }
 
 pub fn run(arguments: &ExciteArguments) -> Result<String> {
+    json::unless_rows(arguments.robot.json, arguments.out.as_deref())?;
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let whole = arguments.robot.load()?;
     let model = edits::sought(&whole, &arguments.coupled, &arguments.lock)?;
@@ -240,7 +241,7 @@ fn page(model: &Model, found: &Excitation, out: Option<&str>, is_long: bool) -> 
         let is_cut = name.chars().count() > LONGEST;
         let name: String =
             if is_cut { name.chars().take(LONGEST - 1).chain("…".chars()).collect() } else { name.clone() };
-        rows.push(vec![name, format!("{value:.4}"), format!("{deviation:.4}")]);
+        rows.push(vec![name, digits(*value, 5), digits(*deviation, 5)]);
     }
     page.title("predicted confidence: base parameters of the robot's file").lines(&table(&rows, "lrr"));
     page.line("  A base parameter is a sum of parameters that forces depend on, such as m c_x + l m'.");

@@ -15,6 +15,7 @@ use clap::{Args, ValueEnum};
 use mozzi::Model;
 use mozzi_motion::inverse_kinematics::{self, Options, Secondary, Solution};
 use mozzi_motion::{Goal, InverseKinematics};
+use mozzi_urdf::counted;
 use serde_json::{Value, json};
 use std::time::Instant;
 
@@ -80,6 +81,7 @@ enum Way {
 }
 
 pub fn run(arguments: &IkArguments) -> Result<String> {
+    json::unless_rows(arguments.robot.json, arguments.output.as_deref())?;
     arguments.output.as_deref().map(Format::check_csv).transpose()?;
     let model = arguments.robot.load()?;
     let guess = positions("--guess", arguments.guess.as_deref(), &model)?;
@@ -226,13 +228,13 @@ fn object(model: &Model, found: &Solution) -> Result<serde_json::Value> {
 fn page(model: &Model, found: &Solution) -> Result<String> {
     let frame = model.end_effector()?;
     let mut page = Page::default();
-    let starts = if found.starts == 1 { "1 start".to_string() } else { format!("{} starts", found.starts) };
+    let [starts, iterations] =
+        [(found.starts, "start"), (found.iterations, "iteration")].map(|(n, noun)| counted(n, noun));
     page.line(format!(
-        "{}: `{}` reaches its goal within {}; {starts}, {} iterations",
+        "{}: `{}` reaches its goal within {}; {starts}, {iterations}",
         model.description().name,
         model.frame_name(frame),
-        found.residual,
-        found.iterations
+        found.residual
     ));
     let names = model.position_names().map(str::to_string);
     let theta = angles::shown(&found.theta, &angles::of_positions(model));

@@ -6,7 +6,7 @@ use crate::input;
 use crate::output::{self, Output};
 use crate::robot_json;
 use mozzi_urdf::fix::{self, Proposal};
-use mozzi_urdf::{EditError, Settings};
+use mozzi_urdf::{EditError, Settings, counted};
 use serde_json::json;
 use std::io::Write;
 
@@ -43,10 +43,7 @@ pub fn run(arguments: &CheckArguments, models: &[String], is_json: bool, setting
             (true, false) => ", applied",
             (false, false) => "; --apply writes them",
         };
-        let count = match proposals.len() {
-            1 => "1 proposal".to_string(),
-            count => format!("{count} proposals"),
-        };
+        let count = counted(proposals.len(), "proposal");
         if arguments.applies() && name == "-" {
             // standard output is the robot's
             failure::write(&lines);

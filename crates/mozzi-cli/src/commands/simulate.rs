@@ -3,10 +3,11 @@
 use super::assemble::{assembled, with_other_starts};
 use super::outcome::Outcome;
 use super::simulate_page::{object, page, told};
+use crate::angles;
 use crate::conditions::{EventArguments, happened};
 use crate::failure::{self, Failure, Result};
 use crate::ground::{GroundArguments, settle};
-use crate::motors::{ACTUATORS, Followed, Limit, MotorArguments, or_hold};
+use crate::motors::{ACTUATORS, Followed, Limit, MotorArguments, damping_rates, or_hold, stiffest};
 use crate::numbers::number;
 use crate::progress::Progress;
 use crate::report::{self, PageArguments};
@@ -85,7 +86,7 @@ pub struct SimulateArguments {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Way {
-    /// moreau if the robot has dry friction, contacts or limits to respect, else rk4
+    /// moreau if the robot has dry friction, contacts, limits to respect or stiff actuators, else rk4
     Auto,
     /// Moreau-Jean, for dry friction, stops and contacts: order 2 as long as no contact changes
     Moreau,
@@ -114,6 +115,7 @@ struct Start {
 const KEPT: usize = 20_000;
 
 pub fn run(arguments: &SimulateArguments) -> Result<String> {
+    json::unless_rows(arguments.robot.json, arguments.out.as_deref())?;
     arguments.out.as_deref().map(log::format).transpose()?; // checked before the motion, which may take long
     let mut start = None;
     let model = arguments.robot.load_at(|model| Ok(start.insert(arguments.started(model)?).theta.clone()))?;
@@ -122,7 +124,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
     let said = arguments.report.as_deref().map(|file| arguments.write_report(file, &model, &outcome)).transpose()?;
     let text = match arguments.out.as_deref() {
         Some("-") => {
-            told(&outcome).iter().for_each(|line| failure::note(line));
+            told(&model, &outcome).iter().for_each(|line| failure::note(line));
             String::new() // the rows are written already
         }
         _ if arguments.robot.json => json::print(&object(&model, &outcome)),
@@ -145,26 +147,14 @@ pub fn run(arguments: &SimulateArguments) -> Result<String> {
 /// Moves the joints of a start that nobody gave, which are left out, into their limits.
 fn within_limits(model: &Model, theta: &mut [f64], left_out: &[bool]) {
     let bounds = Bounds::of(model);
-    for ((k, &[low, high]), name) in bounds.joints.iter().enumerate().zip(model.joint_names()) {
+    for (k, joint) in model.joints().enumerate() {
         let value = bounds.value(theta, k);
         let is_own = bounds.places[k].positions().all(|q| left_out[q]);
-        if is_own && !(low..=high).contains(&value) {
-            let limit = value.clamp(low, high);
-            bounds.places[k].put_at_limit(theta, limit);
+        if let Some(limit) = is_own.then(|| bounds.put_within(theta, k)).flatten() {
+            let (name, [limit, value]) = (&joint.name, [limit, value].map(|x| angles::of_joint(joint.kind, x)));
             failure::note(&format!("joint `{name}` starts at its limit {limit}: {value} is beyond"));
         }
     }
-}
-
-/// The rates d/M_jj of each velocity at which damping of the joints and of a controller acts, 1/s; or √(k/M_jj), if
-/// that is larger.
-fn damping_rates(model: &Model, motors: &dyn Input, theta: &[f64]) -> Result<Vec<f64>> {
-    let M = model.mass_matrix(theta)?;
-    let (mut stiffness, mut damping) = (vec![0.0; model.n()], vec![0.0; model.n()]);
-    motors.gains(&mut stiffness, &mut damping);
-    damping.iter_mut().zip(model.damping()).for_each(|(sum, own)| *sum += own);
-    let rate = |j: usize| (damping[j] / M[(j, j)]).max((stiffness[j] / M[(j, j)]).sqrt());
-    Ok((0..model.n()).map(rate).collect())
 }
 
 impl SimulateArguments {
@@ -174,10 +164,9 @@ impl SimulateArguments {
         if !sentence.contains("diverged") || matches!(self.method, Way::Moreau) {
             return failure;
         }
-        let own = damping_rates(model, &Zero, theta).ok();
+        let own = damping_rates(model, &[], theta).ok();
         let (Some(rates), Ok(step)) = (rates.or(own.as_deref()), number("--step", &self.step)) else { return failure };
-        let fastest = (0..model.n()).max_by(|&a, &b| rates[a].total_cmp(&rates[b]));
-        match fastest.filter(|&j| rates[j] * step > 1.0) {
+        match stiffest(rates, step) {
             None => failure,
             Some(j) => {
                 let name = model.velocity_names().nth(j).unwrap_or_default();
@@ -246,12 +235,22 @@ impl SimulateArguments {
         };
         let reference = or_hold(followed.as_ref(), &hold);
         let motors = self.motors.motors(model, controller.as_ref(), reference, &contacts, end)?;
-        let gains = (self.motors.controller.is_some()).then(|| damping_rates(model, &motors, &theta)).transpose()?;
-        let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into());
+        let gains = (self.motors.controller.is_some() || is_actuated)
+            .then(|| damping_rates(model, &[&motors, &actuated], &theta))
+            .transpose()?;
+        let mut motors = Saturated::new(model, motors, self.motors.effort_limits.into()).of_steps();
         let input = ((&mut motors, actuated), self.motors.wrench(model, end)?);
         let events = self.events.events(model, [&theta, &dtheta])?;
         self.workload(model, end)?.check(self.allow_large)?;
-        let options = self.options(end, limits)?;
+        let mut options = self.options(end, limits)?;
+        let stiff = gains.as_ref().and_then(|rates| Some((rates, stiffest(rates, options.step())?)));
+        if let (Way::Auto, true, Some((rates, j))) = (self.method, is_actuated, stiff) {
+            let (name, rate) = (model.velocity_names().nth(j).unwrap_or_default(), scalar(rates[j].round()));
+            failure::note(&format!(
+                "`{name}` is stiff: its actuator acts at a rate of {rate} 1/s; the method is moreau, which takes it implicitly"
+            ));
+            options.method = Method::MoreauJean;
+        }
         let is_led = followed.is_some() || controller.is_some();
         let mut tracking = is_led.then(|| Tracking::new(model, &reference));
         let names: Vec<String> = contacts.names().collect();

@@ -238,7 +238,7 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
             page.lines(&[format!("… of {} velocities, of which the largest error is {worst}", largest.len())]);
         }
     }
-    told(outcome).iter().for_each(|line| {
+    told(model, outcome).iter().for_each(|line| {
         page.line(line);
     });
     if let Some(file) = file {
@@ -249,14 +249,17 @@ pub fn page(model: &Model, outcome: &Outcome, file: Option<&str>) -> String {
 
 /// A sentence for each event that happened or did not, each joint that reached its limit, and each motor with a
 /// demanded effort above its limit.
-pub fn told(outcome: &Outcome) -> Vec<String> {
+pub fn told(model: &Model, outcome: &Outcome) -> Vec<String> {
     let missed = |condition: &String| {
         format!("event: `{condition}` did not happen up to t = {} s", scalar(outcome.motion.last().t))
     };
     let events = happened(&outcome.events).into_iter().chain(outcome.missed.iter().map(missed));
     let stop = |stop: &Stopped| {
-        let (joint, limit, first) = (&stop.joint, scalar(stop.limit), scalar(stop.first));
-        match stop.beyond {
+        let (joint, first) = (&stop.joint, scalar(stop.first));
+        let kind = model.joints().find(|known| known.name == *joint).map(|known| known.kind);
+        let [limit, beyond] = [stop.limit, stop.beyond].map(|x| kind.map_or(x, |kind| angles::of_joint(kind, x)));
+        let limit = scalar(limit);
+        match beyond {
             0.0 => {
                 let times = if stop.times == 1 { String::new() } else { format!("first of {} times ", stop.times) };
                 format!("joint limit: `{joint}` came to rest at {limit}, {times}at t = {first} s")
@@ -279,8 +282,8 @@ pub fn told(outcome: &Outcome) -> Vec<String> {
         };
         let halved = match a.halvings {
             0 => String::new(),
-            1 => "; steps halved once, where it did not settle".to_string(),
-            count => format!("; steps halved {count} times, where they did not settle"),
+            1 => "; steps halved once, where it did not settle or would lift the robot".to_string(),
+            count => format!("; steps halved {count} times, where they did not settle or would lift the robot"),
         };
         let unsettled = match a.unsettled {
             0 => String::new(),

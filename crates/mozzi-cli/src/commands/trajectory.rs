@@ -101,6 +101,7 @@ const SHOWN: usize = 10;
 const PLACES: usize = 500;
 
 pub fn run(arguments: &TrajectoryArguments) -> Result<String> {
+    json::unless_rows(arguments.robot.json, arguments.out.as_deref())?;
     arguments.out.as_deref().map(Format::check_csv).transpose()?;
     let model = arguments.robot.load_at(|model| positions("--from", arguments.from.as_deref(), model))?;
     if model.constraint_rows() > 0 {
@@ -299,27 +300,31 @@ fn columns(model: &Model, rows: &[Row]) -> Columns {
 /// torque.
 fn beyond(model: &Model, rows: &[&Row], limits: &Limits) -> Vec<String> {
     let mut told = Vec::new();
-    let mut say = |what: &str, name: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2]| {
-        let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
-        let worst = (0..rows.len()).max_by(|&a, &b| excess(a).total_cmp(&excess(b))).unwrap_or(0);
-        // a motion within a limit may exceed it by rounding
-        let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
-        if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
-            let (x, limit, t) = (scalar(x), scalar(limit), scalar(rows[worst].t));
-            told.push(format!("{what} limit: `{name}` reaches {x}, beyond its limit {limit}, at t = {t} s"));
-        }
-    };
+    let mut say =
+        |what: &str, name: &str, asked: &dyn Fn(usize) -> f64, [low, high]: [f64; 2], shown: &dyn Fn(f64) -> f64| {
+            let excess = |row: usize| (low - asked(row)).max(asked(row) - high);
+            let worst = (0..rows.len()).max_by(|&a, &b| excess(a).total_cmp(&excess(b))).unwrap_or(0);
+            // a motion within a limit may exceed it by rounding
+            let (x, limit) = (asked(worst), if asked(worst) < low { low } else { high });
+            if excess(worst) > 1e-9 + 1e-6 * limit.abs() {
+                let (x, limit, t) = (scalar(shown(x)), scalar(shown(limit)), scalar(rows[worst].t));
+                told.push(format!("{what} limit: `{name}` reaches {x}, beyond its limit {limit}, at t = {t} s"));
+            }
+        };
     let names: Vec<&str> = model.velocity_names().collect();
     let bounds = Bounds::of(model);
-    for ((joint, range), place) in model.joint_names().zip(&bounds.joints).zip(model.places()) {
-        say("joint", joint, &|row| place.bounded_value(&rows[row].theta), *range);
+    let rates = angles::of_velocities(model);
+    for ((joint, range), place) in model.joints().zip(&bounds.joints).zip(model.places()) {
+        let shown = |x: f64| angles::of_joint(joint.kind, x);
+        say("joint", &joint.name, &|row| place.bounded_value(&rows[row].theta), *range, &shown);
         for v in place.velocities() {
             for (what, asked, limit) in [
                 ("velocity", &(|row: usize| rows[row].dtheta[v]) as &dyn Fn(usize) -> f64, limits.velocity[v]),
                 ("acceleration", &|row| rows[row].ddtheta[v], limits.acceleration[v]),
                 ("effort", &|row| rows[row].tau[v], limits.torque[v]),
             ] {
-                say(what, names[v], asked, [-limit, limit]);
+                let shown = |x: f64| angles::shown(&[x], &[rates[v] && what != "effort"])[0];
+                say(what, names[v], asked, [-limit, limit], &shown);
             }
         }
     }

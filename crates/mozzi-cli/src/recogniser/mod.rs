@@ -13,17 +13,18 @@ pub mod unit;
 mod word;
 mod wrench;
 
-pub use entries::{Force, IS_CURRENT, Locked, holds_names, is_alike};
+pub use entries::{Follower, Force, IS_CURRENT, Locked, holds_names, is_alike};
 pub use show::POSITION;
 pub use time::Time;
 
 use crate::columns;
 use crate::failure::{Failure, Result};
-use crate::tables::samples::{LockedRange, Row, Samples};
+use crate::tables::samples::{Followed, Following, LockedRange, Row, Samples};
 use crate::text_table::clock;
 use mozzi::Model;
 use mozzi::quantities::INPUTS;
 use reading::{Entry, Kind, Reading};
+use std::collections::BTreeMap;
 use unit::Unit;
 
 /// Columns that `mozzi simulate` writes in addition to the groups; they are read but not used.
@@ -139,6 +140,7 @@ pub struct Recognised {
     wrenches: Vec<wrench::Wrench>,
     targets: Option<Vec<Option<Column>>>,
     locked: Vec<Locked>,
+    followers: Vec<Follower>,
     /// Notes about columns that were converted, preferred or left out.
     pub notes: Vec<String>,
     /// Each column with its meaning.
@@ -156,8 +158,8 @@ impl Recognised {
         let mut notes = assignment.notes;
         let rows = show::rows(header, model, &roles, &assignment.groups, time);
         notes.extend(show::unused(place, header, &roles));
-        let (groups, targets, locked) = (assignment.groups, assignment.targets, assignment.locked);
-        Ok(Recognised { time, groups, wrenches, targets, locked, notes, rows })
+        let entries::Assignment { groups, targets, locked, followers, .. } = assignment;
+        Ok(Recognised { time, groups, wrenches, targets, locked, followers, notes, rows })
     }
 
     /// The contents of the columns; `number` takes a row and a column.
@@ -176,13 +178,29 @@ impl Recognised {
         let of_wrench = |columns: &[usize; 6]| table(&columns.map(|column| Some((column, 1.0))));
         let wrenches = self.wrenches.iter().map(|(name, columns)| (name.clone(), of_wrench(columns)));
         let targets = self.targets.iter().map(|columns| (TARGET.to_string(), table(columns)));
-        let tables = groups.chain(wrenches).chain(targets).collect();
+        let mut tables: BTreeMap<String, Vec<f64>> = groups.chain(wrenches).chain(targets).collect();
+        let mut followers = Vec::new();
+        for follower in &self.followers {
+            let number = |row: usize| number(row, follower.column.0);
+            let width = self.groups[follower.group].as_ref().map_or(0, Vec::len);
+            let Some(table) = tables.get_mut(GROUPS[follower.group]) else { continue };
+            let found = match follower.group {
+                word::TAU => Followed::Lacks(follower.add(table, width, number)),
+                _ => follower.differing(table, width, number).map_or(Followed::Lacks(0), Followed::Differs),
+            };
+            let Follower { joint, source, ratio, offset, column: (column, _), .. } = follower;
+            let (joint, column) = (joint.clone(), self.rows[*column].column.clone());
+            let law = format!("{ratio} · {source} + {offset}");
+            followers.push(Following { joint, source: source.clone(), law, column, found });
+        }
+        let mut begin = 0.0;
         let t = self.time.map(|time| {
             let first = |column: usize| if count > 0 { number(0, column) } else { 0.0 };
             match time {
                 // from the first row: nanoseconds since 1970 would lose digits
                 Time::Pair { seconds, rest, factor } => {
                     let (s, r) = (first(seconds), first(rest));
+                    begin = s + r * factor;
                     (0..count).map(|row| number(row, seconds) - s + (number(row, rest) - r) * factor).collect()
                 }
                 Time::Column { column, factor } => {
@@ -190,6 +208,7 @@ impl Recognised {
                     let is_same = (1..count).all(|row| number(row, column) == first(column));
                     let is_kept = is_same || factor == 1.0 && first(column).abs() < 1e8;
                     let start = if is_kept { 0.0 } else { first(column) };
+                    begin = start * factor;
                     (0..count).map(|row| (number(row, column) - start) * factor).collect()
                 }
             }
@@ -203,7 +222,8 @@ impl Recognised {
             LockedRange { joint: locked.joint.clone(), meaning: locked.meaning, column: name, low, high }
         });
         let locked = locked.collect();
-        Samples { file: file.to_string(), count, t, tables, is_time_certain, locked, ..Samples::default() }
+        let (file, start) = (file.to_string(), begin);
+        Samples { file, count, t, start, tables, is_time_certain, locked, followers, ..Samples::default() }
     }
 
     /// The columns that are used, in order; a file without any is an error.
@@ -233,6 +253,7 @@ impl Recognised {
             .chain(groups)
             .chain(targets)
             .chain(locked)
+            .chain(self.followers.iter().map(|follower| follower.column.0))
             .chain(self.wrenches.iter().flat_map(|(_, columns)| columns).copied())
     }
 

@@ -210,9 +210,10 @@ pub fn find(place: &str, header: &Header, roles: &mut [Role]) -> Result<Option<T
     Ok(Some(time))
 }
 
-/// The unit of a time since 1970, if its size leaves no doubt.
+/// The unit of a time since 1970, if its size leaves no doubt: from 1973 on, in seconds until the year 5138.
 fn of_epoch(first: f64) -> Option<f64> {
-    (first > 1e17).then_some(1e-9)
+    let units = [(1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3)];
+    units.into_iter().find(|(least, _)| first > *least).map(|(_, unit)| unit)
 }
 
 impl Time {
@@ -242,6 +243,14 @@ impl Time {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_since_1970_have_their_unit() {
+        let now = 1.7e9;
+        for (unit, expected) in [(1.0, None), (1e-3, Some(1e-3)), (1e-6, Some(1e-6)), (1e-9, Some(1e-9))] {
+            assert_eq!(of_epoch(now / unit), expected);
+        }
+    }
 
     #[test]
     fn times_have_many_names() {

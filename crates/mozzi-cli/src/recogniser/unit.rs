@@ -23,6 +23,19 @@ pub struct Unit {
     pub factor: f64,
 }
 
+impl Unit {
+    /// Whether it is that of a joint that turns, or of one that slides; None for currents, times and parts.
+    pub fn turns(self) -> Option<bool> {
+        match self.dimension {
+            Position | Velocity | Acceleration => {
+                Some(["rad", "deg", "rev", "rpm"].iter().any(|of| self.name.contains(of)))
+            }
+            Force => Some(self.name.contains(' ')), // a force times a length
+            Time | Current | Share => None,
+        }
+    }
+}
+
 const DEGREE: f64 = PI / 180.0;
 
 use Dimension::{Acceleration, Current, Force, Position, Share, Time, Velocity};

@@ -85,7 +85,7 @@ fn interpolate(t: &[f64], table: &mut [f64], (k, width): (usize, usize), all: &[
     let known: Vec<(f64, f64)> =
         all.iter().map(|&row| (t[row], table[row * width + k])).filter(|(_, x)| x.is_finite()).collect();
     let mut steps: Vec<f64> = known.windows(2).map(|pair| pair[1].0 - pair[0].0).filter(|step| *step > 0.0).collect();
-    steps.sort_by(f64::total_cmp);
+    steps.sort_unstable_by(f64::total_cmp);
     let Some(&step) = steps.get(steps.len() / 2) else { return false };
     let mut has_any = false;
     for &row in rows.iter().filter(|&&row| table[row * width + k].is_nan()).collect::<Vec<_>>() {

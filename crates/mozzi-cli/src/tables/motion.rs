@@ -33,7 +33,10 @@ pub fn mended(mut samples: Samples, model: &Model) -> Result<Samples> {
     let (first, last) = (t[0], t[t.len() - 1]);
     if last > first && first.abs() > last - first {
         t.iter_mut().for_each(|t| *t -= first);
-        failure::note(&format!("{file}: times are counted from the first row, t = {first} s"));
+        samples.start += first;
+    }
+    if samples.start != 0.0 {
+        failure::note(&format!("{file}: times are counted from the first row, t = {} s", samples.start));
     }
     Ok(samples)
 }

@@ -25,6 +25,26 @@ pub struct LockedRange {
     pub high: f64,
 }
 
+/// A column of a mimic joint beside its source joint's.
+#[derive(Clone, Debug)]
+pub struct Following {
+    pub joint: String,
+    pub source: String,
+    /// "3 · a + 0.2".
+    pub law: String,
+    pub column: String,
+    pub found: Followed,
+}
+
+/// How a mimic joint's column fits its source joint's.
+#[derive(Clone, Debug)]
+pub enum Followed {
+    /// The median distance of positions from the law, and the law's own motion (root mean square), rad or m.
+    Differs([f64; 2]),
+    /// Rows in which only the source has a force.
+    Lacks(usize),
+}
+
 /// Numbers by name: those of the inputs, `wrench` of the tip; for .npz also `gravity`, `parameters` and `wrench_FRAME`.
 #[derive(Debug, Default)]
 pub struct Samples {
@@ -36,6 +56,8 @@ pub struct Samples {
     pub lines: Vec<u64>,
     /// Times, s.
     pub t: Option<Vec<f64>>,
+    /// The time of the first row, if `t` is counted from it, else 0.
+    pub start: f64,
     /// By name, each by rows.
     pub tables: BTreeMap<String, Vec<f64>>,
     /// Whether the unit of `t` is named, or follows from its size.
@@ -44,6 +66,8 @@ pub struct Samples {
     pub columns: Vec<Row>,
     /// The ranges of locked joints.
     pub locked: Vec<LockedRange>,
+    /// Likewise mimic joints.
+    pub followers: Vec<Following>,
 }
 
 impl Samples {

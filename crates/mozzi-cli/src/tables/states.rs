@@ -43,6 +43,7 @@ impl<T: Precision> States<T> {
             },
             _ => read::read(file, model)?,
         };
+        samples.t.iter_mut().flatten().for_each(|t| *t += samples.start); // as the table has them
         degrees::question(&samples, model);
         if is_bag(file) {
             join(&mut samples, model, "")?; // an arm's joints may come in several messages

@@ -337,3 +337,28 @@ fn bench_tells_this_machines_times() {
         assert!(page.contains(word), "{word} in {page}");
     }
 }
+
+/// Links without mass.
+const KINEMATIC: &str = r#"<robot name="kin"><link name="b"/><link name="l1"/><link name="l2"/>
+<joint name="j1" type="continuous"><parent link="b"/><child link="l1"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="continuous"><parent link="l1"/><child link="l2"/><origin xyz="1 0 0"/><axis xyz="0 1 0"/></joint></robot>"#;
+
+#[test]
+fn bench_takes_what_a_robot_has_once() {
+    let size = ["--rounds", "1", "--states", "10", "--threads", "1"];
+    // six numbers beside those of two joints
+    for name in ["frame-twist-vjp", "frame-acceleration-vjp", "momentum-vjp", "momentum-rate-vjp", "M,M"] {
+        let found: Value = json(&[&["bench", "double_pendulum", "--quantity", name], &size[..]].concat());
+        assert_eq!(found["timings"].as_array().map(Vec::len), Some(3), "{name}");
+    }
+    let robot = file(&folder("kinematic"), "kin.urdf", KINEMATIC);
+    for arguments in [[&["bench", &robot], &size[..]].concat(), vec!["codegen", &robot, "--explain"]] {
+        let run = mozzi(&arguments);
+        let (page, notes) = (String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr));
+        assert!(run.status.success() && page.contains("body-jacobian"), "{page} {notes}");
+        assert!(!page.contains("\nforward-dynamics ") && notes.contains("no forward-dynamics"), "{page} {notes}");
+    }
+    let folder = folder("kinematic_code");
+    let (code, why) = complaint(&["codegen", &robot, "aba", "--lang", "c", "--out", &folder.to_string_lossy()]);
+    assert!(code == 1 && why.contains("singular in all states"), "{why}");
+}

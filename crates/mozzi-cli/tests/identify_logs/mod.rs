@@ -4,6 +4,7 @@
 mod bags;
 mod commands;
 mod drivers;
+mod mimic;
 mod motion;
 mod readers;
 

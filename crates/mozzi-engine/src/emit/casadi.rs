@@ -87,7 +87,7 @@ pub fn emit_casadi(model: &Model, quantities: &[Query], arguments: Arguments) ->
     });
     let functions: Vec<Emitted> = functions.collect();
     functions.iter().try_for_each(|function| refuse(function, Precision::F64, None))?;
-    let about = describe::robot(model, arguments, Precision::F64);
+    let about = describe::robot(model, arguments, Precision::F64, RULES);
     let source = Source { name: robot, about, functions, precision: Precision::F64 };
     Ok(vec![file(&source, &externals)])
 }
@@ -112,6 +112,12 @@ fn by_columns(mut program: Program, shapes: &[[usize; 2]]) -> Program {
     }
     program
 }
+
+/// CasADi's sparse matrices, and what its functions check.
+const RULES: describe::Rules = describe::Rules {
+    matrices: "Matrices are by columns, without the entries that are always 0.",
+    checks: "a singular matrix is a failed evaluation",
+};
 
 /// The Jacobian; of inverse and forward dynamics with the derivatives that have a kernel of their own.
 fn of_jacobian(model: &Model, query: Query, arguments: Arguments, program: &Program) -> Result<Program, EmitError> {

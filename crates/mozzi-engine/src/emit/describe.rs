@@ -7,8 +7,19 @@ use mozzi::Freedom;
 use mozzi::quantities::{Of, Query};
 use mozzi::{FrameId, Model, TaskFrame};
 
+/// Sentences of the header comment about all functions of a text.
+pub(super) struct Rules {
+    /// The order of the entries of matrices.
+    pub matrices: &'static str,
+    /// Checks beside those of NaN and large angles.
+    pub checks: &'static str,
+}
+
+/// Functions on arrays.
+pub(super) const ARRAYS: Rules = Rules { matrices: "Matrices are by rows.", checks: "nothing else is checked" };
+
 /// The header comment of a text.
-pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -> Vec<String> {
+pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision, rules: Rules) -> Vec<String> {
     let mut lines = vec![
         format!("The dynamics of the robot `{}` as straight-line code.", in_comment(&model.description().name)),
         format!("Made by mozzi {}; do not edit; generate it again.", env!("CARGO_PKG_VERSION")),
@@ -18,7 +29,7 @@ pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -
     lines.push(format!(
         "Numbers are {numbers} floats in SI units: m, rad, kg, s, N. Six numbers are angular first: twists (w, v), wrenches (m, f)."
     ));
-    lines.push("Arrays must not overlap. Matrices are by rows.".to_string());
+    lines.push(format!("Arrays must not overlap. {}", rules.matrices));
     lines.push(
         "Frames: {s} is the frame of the fixed base, or the world of a floating one; a link's frame is that of the file."
             .to_string(),
@@ -42,8 +53,9 @@ pub(super) fn robot(model: &Model, arguments: Arguments, precision: Precision) -
         lines.push("Masses, inertias, frictions and springs are an argument; geometry is built in.".to_string());
     }
     lines.push(format!(
-        "Results that depend on NaN or an angle beyond {:?} rad are NaN; nothing else is checked.",
-        precision.largest_angle()
+        "Results that depend on NaN or an angle beyond {:?} rad are NaN; {}.",
+        precision.largest_angle(),
+        rules.checks
     ));
     lines.push(String::new());
     let joints: Vec<_> = model.moving_joints().map(|joint| (joint.name.as_str(), joint.kind.name())).collect();
@@ -219,10 +231,24 @@ const LETTERS: [(&str, &str); 50] = [
     ("“", "'"),
 ];
 
-/// A formula or a unit in ASCII, which every compiler reads in a comment.
+/// A formula or a unit in ASCII, which every compiler reads in a comment. Factors stand apart: J_bθ̇ is J_b dtheta.
 fn ascii(text: &str) -> String {
-    let plain = LETTERS.iter().fold(text.to_string(), |text, (symbol, letters)| text.replace(symbol, letters));
-    plain.chars().map(|c| if c.is_ascii() { c } else { '_' }).collect()
+    let (mut plain, mut rest, mut is_prefix) = (String::new(), text, false);
+    while let Some(next) = rest.chars().next() {
+        let found = LETTERS.iter().find(|(symbol, _)| rest.starts_with(symbol));
+        let (symbol, letters) =
+            found.copied().unwrap_or((&rest[..next.len_utf8()], if next.is_ascii() { "" } else { "_" }));
+        let letters = if letters.is_empty() { symbol } else { letters };
+        let is_factor =
+            found.is_some() && letters.len() > 1 && letters.starts_with(char::is_alphabetic) && symbol != "ü";
+        if is_factor && !is_prefix && plain.ends_with(|last: char| last.is_alphanumeric() || last == ')') {
+            plain.push(' ');
+        }
+        plain += letters;
+        is_prefix = symbol == "∂";
+        rest = &rest[symbol.len()..];
+    }
+    plain
 }
 
 #[cfg(test)]
@@ -236,6 +262,7 @@ mod tests {
                 assert!(text.contains('_') || !super::ascii(text).contains('_'), "{text}: {}", super::ascii(text));
             }
         }
-        assert_eq!(super::ascii("τ = M(θ)θ̈ + JᵀF"), "tau = M(theta)ddtheta + J^T F");
+        assert_eq!(super::ascii("τ = M(θ)θ̈ + JᵀF"), "tau = M(theta) ddtheta + J^T F");
+        assert_eq!(super::ascii("V = J_bθ̇, ½θ̇ᵀMθ̇, ∂τ/∂θ"), "V = J_b dtheta, 1/2 dtheta^T M dtheta, dtau/dtheta");
     }
 }

@@ -122,7 +122,10 @@ impl fmt::Display for EmitError {
                 write!(f, "{function}: {language:?} has none without its standard library, expected C or CUDA")
             }
             EmitError::Write(path, error) => write!(f, "{} cannot be written: {error}", path.display()),
-            EmitError::Constant(x, precision) => write!(f, "a constant is {x:?}, expected a finite {precision:?}"),
+            EmitError::Constant(x, precision) => {
+                let cause = if x.is_nan() { " (the mass matrix may be singular in all states)" } else { "" };
+                write!(f, "a constant is {x:?}{cause}, expected a finite {precision:?}")
+            }
         }
     }
 }
@@ -169,7 +172,7 @@ pub fn emit(
         function.describe_arrays(|name| describe::array(model, *quantity, arguments, name));
         functions.push(function);
     }
-    let about = describe::robot(model, arguments, precision);
+    let about = describe::robot(model, arguments, precision, describe::ARRAYS);
     files(&model.description().name, about, functions, language, precision)
 }
 

@@ -202,7 +202,8 @@ impl<'p> Newton<'p> {
 
     fn infeasible(&self, y: &DVector<f64>) -> Result<DVector<f64>, Error> {
         let violated = (0..self.bounds.len()).filter(|&b| !(self.slack(y, b) > 0.0));
-        let names: Vec<&str> = violated.map(|b| self.problem.bounds[b].name.as_str()).collect();
+        let mut names: Vec<&str> = violated.map(|b| self.problem.bounds[b].name.as_str()).collect();
+        names.dedup(); // a box is six bounds
         let what = match names.is_empty() {
             true => "no point satisfies all of them in double precision; a number is infinite or far too large".into(),
             false => names.join(", "),

@@ -13,6 +13,9 @@ const DETERMINED: f64 = 1e-6;
 /// force would outweigh all others.
 const RESOLVED: f64 = 1e-6;
 
+/// The least share of the noise that the unknowns leave in the residuals.
+const LEAST_FREEDOM: f64 = 0.05;
+
 /// Rounds of reweighting.
 const ROUNDS: usize = 20;
 
@@ -55,8 +58,8 @@ impl LeastSquares {
         // a force that is 0, such as a floating base's, begins with the weight of the largest
         let start = |rms: f64| if rms > 1e-9 * most { rms } else { most };
         let mut sigma: Vec<f64> = evidence.rms().into_iter().map(start).collect();
-        // each force's share of the unknowns, as if they were spread evenly
-        let freedom = (1.0 - r as f64 / rows as f64).sqrt();
+        // each force's share of the unknowns, as if they were spread evenly: they fit as many independent samples
+        let freedom = (1.0 - r as f64 / (rows as f64 * evidence.independent)).max(LEAST_FREEDOM).sqrt();
         for _ in 0..ROUNDS {
             let x = weighted_by(evidence, base, &sigma);
             let next: Vec<f64> = evidence.rmse(&x).into_iter().map(|e| (e / freedom).max(least)).collect();

@@ -1,6 +1,7 @@
 //! Limits of exciting motions: joints, torques, collisions.
 
 use core::f64::consts::{PI, TAU};
+use mozzi::model::Bounds;
 use mozzi::{FrameId, Model, Vec3, Wrench};
 
 /// A box in {s} that a frame's origin must not leave.
@@ -48,9 +49,9 @@ const NARROW: f64 = 1e-6;
 const ROOM: f64 = 0.1;
 
 impl MotionLimits {
-    /// The robot's own: positions less 2 % at both ends, two turns at most, half a turn or 0.2 m to both sides of 0 if
-    /// there is no limit, a turn or 0.4 m from the only one; velocities, 1 rad/s or 0.2 m/s if there is none;
-    /// accelerations that reach them in 0.3 s, less if the file has lower limits; effort.
+    /// The robot's own, with those of mimic joints: positions less 2 % at both ends, two turns at most, half a turn or
+    /// 0.2 m to both sides of 0 if there is no limit, a turn or 0.4 m from the only one; velocities, 1 rad/s or 0.2 m/s
+    /// if there is none; accelerations that reach them in 0.3 s, less if the file has lower limits; effort.
     pub fn of(model: &Model) -> Self {
         let mut limits = MotionLimits {
             position: Vec::new(),
@@ -60,10 +61,12 @@ impl MotionLimits {
             boxes: Vec::new(),
             apart: Vec::new(),
         };
-        for joint in model.joints() {
+        let bounds = Bounds::of(model);
+        let [velocities, accelerations] = Bounds::of_rates(model);
+        for (k, joint) in model.joints().enumerate() {
             let slides = joint.kind.name() == "prismatic";
             let reach = if slides { 0.2 } else { PI };
-            let [mut low, mut high] = match joint.limits.bounds() {
+            let [mut low, mut high] = match bounds.joints[k] {
                 [low, high] if low.is_finite() && high.is_finite() => [low, high],
                 [low, _] if low.is_finite() => [low, low + 2.0 * reach],
                 [_, high] if high.is_finite() => [high - 2.0 * reach, high],
@@ -76,10 +79,10 @@ impl MotionLimits {
             }
             let margin = 0.02 * (high - low);
             limits.position.push([low + margin, high - margin]);
-            let velocity = joint.limits.velocity.filter(|v| *v > 0.0).unwrap_or(if slides { 0.2 } else { 1.0 });
+            let given = |x: f64, otherwise: f64| if 0.0 < x && x < f64::INFINITY { x } else { otherwise };
+            let velocity = given(velocities[k], if slides { 0.2 } else { 1.0 });
             limits.velocity.push(velocity);
-            let acceleration = joint.limits.acceleration.filter(|a| *a > 0.0);
-            limits.acceleration.push(acceleration.unwrap_or(f64::INFINITY).min(velocity / TO_SPEED));
+            limits.acceleration.push(given(accelerations[k], f64::INFINITY).min(velocity / TO_SPEED));
             limits.torque.push(joint.limits.effort.filter(|t| *t > 0.0).unwrap_or(f64::INFINITY));
         }
         limits

@@ -106,12 +106,12 @@ fn state(basis: &Basis, coefficients: &[f64], t: f64) -> [Vec<f64>; 3] {
 /// Searches a motion. `stop` ends the search with the best so far.
 ///
 /// # Errors
-/// [`Error::BadOption`] for a duration that is not positive, limits of a wrong length, a start at which a limit is
-/// broken, or limits that leave no room for a motion.
+/// [`Error::BadOption`] for a duration or a rate that is not positive, a negative radius, no joint that moves, limits
+/// of a wrong length, a start at which a limit is broken, or limits that leave no room for a motion.
 pub fn excite(model: &Model, options: &ExciteOptions, stop: &dyn Fn() -> bool) -> Result<Excitation, Error> {
     without_constraints(model)?;
     check(model, options)?;
-    let columns = Columns::new(model, Choice { apparent: false, ..options.choice.clone() })?;
+    let columns = Columns::new(model, Choice { apparent: false, gains: false, ..options.choice.clone() })?;
     let (P, n) = (columns.count(), model.n());
     let names = columns.unknowns.iter().map(|unknown| unknown.name.clone()).collect();
     let base = BaseParameters::of_columns(&stacked(&columns, 2 * P / n + 10)?, names);
@@ -197,6 +197,9 @@ fn check(model: &Model, options: &ExciteOptions) -> Result<(), Error> {
     if !(options.duration > 0.0 && options.duration.is_finite()) {
         return wrong("the duration", format!("{} s", options.duration), "a positive number of seconds");
     }
+    if !(options.rate > 0.0 && options.rate.is_finite()) {
+        return wrong("the rate", format!("{} Hz", options.rate), "a positive number of samples per second");
+    }
     if options.harmonics == 0 || options.harmonics > 50 {
         return wrong("harmonics", options.harmonics.to_string(), "1 to 50");
     }
@@ -210,6 +213,13 @@ fn check(model: &Model, options: &ExciteOptions) -> Result<(), Error> {
     ];
     if lengths.iter().any(|&length| length != n) {
         return wrong("limits and noise", format!("of lengths {lengths:?}"), "one number for each joint");
+    }
+    if !limits.position.iter().any(|[low, high]| low < high) {
+        return wrong("the range of every joint", "0".into(), "a joint that moves");
+    }
+    let radii = limits.apart.iter().flat_map(|(a, b)| [a.radius, b.radius]);
+    if let Some(radius) = radii.into_iter().find(|radius| !(*radius >= 0.0 && radius.is_finite())) {
+        return wrong("a radius", format!("{radius} m"), "0 or more");
     }
     if !options.noise.iter().all(|x| *x > 0.0 && x.is_finite()) {
         return wrong("the noise", format!("{:?}", options.noise), "positive numbers");

@@ -3,6 +3,7 @@
 use super::{Basis, ExciteOptions, MotionLimits, lbfgs, state};
 use crate::Error;
 use crate::columns::{Columns, Equations, Kind};
+use crate::rotors::rate;
 use crate::signals::Samples;
 use mozzi::quantities::{InverseDynamics, InverseDynamicsVjp, Query};
 use mozzi::random::Random;
@@ -141,19 +142,36 @@ impl<'a, 'm> Objective<'a, 'm> {
         let model = self.columns.model;
         let n = model.n();
         let query = Query::from(InverseDynamicsVjp);
-        let width = self.columns.choice.width;
+        let shape = self.columns.choice.shape();
         let mut found: [Vec<f64>; 3] = core::array::from_fn(|_| vec![0.0; n]);
         for j in 0..n {
-            let mut pi = vec![0.0; model.parameter_count()];
+            let (mut pi, mut body) = (vec![0.0; model.parameter_count()], [0.0; 10]);
+            // a force J_j f(J θ̇) of a rotor; f' of the joint itself
+            let mut add_rotor = |r: usize, slope: &dyn Fn(f64) -> f64| {
+                let J = &self.columns.rotors[r];
+                let slope = J[j] * slope(rate(J, &at[1]));
+                slopes[1].iter_mut().zip(J).for_each(|(sum, J)| *sum += slope * J);
+            };
             let mut of_friction = 0.0;
             for (row, &column) in self.base.columns.iter().enumerate() {
                 let value = g[(j, row)] / self.options.noise[j];
                 match self.columns.unknowns[column].kind {
                     Kind::Link(k) | Kind::Armature(k) | Kind::Viscous(k) | Kind::Stiffness(k) => pi[k] = value,
-                    Kind::Coulomb(k) if self.columns.row_of(k) == j => of_friction = value,
-                    _ => {}
+                    Kind::Coulomb(k) if self.columns.row_of(k) == j => of_friction += value * shape.slopes(at[1][j])[0],
+                    Kind::Stribeck(place) if self.columns.rows[place].contains(&j) => {
+                        of_friction += value * shape.slopes(at[1][j])[1];
+                    }
+                    Kind::RotorViscous(r) => add_rotor(r, &|_| value),
+                    Kind::RotorCoulomb(r) => add_rotor(r, &|omega| value * shape.slopes(omega)[0]),
+                    Kind::Payload(k) => body[k] = value,
+                    // other joints' friction, what does not depend on the motion, and what no motion is sought for
+                    Kind::Coulomb(_) | Kind::Stribeck(_) | Kind::Offset(_) | Kind::Apparent(_) | Kind::Gain(_) => {}
                 }
             }
+            if let Some(carried) = &self.columns.payload {
+                carried.add(&mut pi, &body);
+            }
+            slopes[1][j] += of_friction;
             let robot = model.with_parameters(&pi);
             let mut x = vec![0.0; n];
             x[j] = 1.0;
@@ -163,8 +181,6 @@ impl<'a, 'm> Objective<'a, 'm> {
             for (sum, slope) in slopes.iter_mut().flatten().zip(found.iter().flatten()) {
                 *sum += slope;
             }
-            let tanh = (at[1][j] / width).tanh();
-            slopes[1][j] += of_friction * (1.0 - tanh * tanh) / width;
         }
     }
 
@@ -280,6 +296,9 @@ impl<'a, 'm> Objective<'a, 'm> {
     pub fn condition(&mut self, c: &[f64]) -> f64 {
         let mut S = self.information(c);
         let units: Vec<f64> = (0..S.nrows()).map(|k| S[(k, k)].sqrt()).collect();
+        if units.contains(&0.0) {
+            return f64::INFINITY; // no force shows this parameter
+        }
         for k in 0..units.len() {
             for i in 0..units.len() {
                 S[(i, k)] /= units[i] * units[k];

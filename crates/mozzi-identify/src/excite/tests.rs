@@ -6,7 +6,7 @@ use crate::columns::Columns;
 use crate::compress::stacked;
 use crate::{Choice, Sensor};
 use core::f64::consts::TAU;
-use mozzi::model::description::JointKind;
+use mozzi::model::description::{Gear, JointKind, Rotor};
 use mozzi::random::Random;
 use mozzi::{BaseParameters, Model, ScrewAxis};
 
@@ -16,10 +16,20 @@ fn robot(name: &str) -> Model {
 
 #[test]
 fn the_gradient_is_that_of_differences() {
-    for (name, choice_of_goal) in
-        [("double_pendulum", Goal::LogDet), ("ur5", Goal::LogDet), ("double_pendulum", Goal::Condition)]
-    {
-        let model = robot(name);
+    for (name, choice_of_goal, is_rich) in [
+        ("double_pendulum", Goal::LogDet, false),
+        ("ur5", Goal::LogDet, false),
+        ("double_pendulum", Goal::Condition, false),
+        ("double_pendulum", Goal::LogDet, true),
+    ] {
+        let mut model = robot(name);
+        if is_rich {
+            let mut wrist = model.description().clone();
+            let gear = |joint: &str, ratio: f64| Gear { joint: joint.into(), ratio };
+            let gears = vec![gear(&wrist.joints[0].name, 2.0), gear(&wrist.joints[1].name, -1.5)];
+            wrist.rotors.push(Rotor { name: "both".into(), armature: 0.1, gears });
+            model = wrist.build().expect("sound");
+        }
         let mut options = ExciteOptions { harmonics: 3, goal: choice_of_goal, ..ExciteOptions::new(&model, 6.0) };
         options.limits.velocity.fill(0.5);
         options.limits.torque.fill(10.0);
@@ -28,6 +38,10 @@ fn the_gradient_is_that_of_differences() {
         options.limits.boxes.push(Box3 { frame: tip, corners: [[-0.1, -0.1, 0.0], [0.2, 0.2, 0.3]] });
         let [a, b] = [first, tip].map(|frame| Sphere { frame, radius: 0.5 });
         options.limits.apart.push((a, b));
+        if is_rich {
+            (options.choice.stribeck, options.choice.stiffness, options.choice.payload) = (Some(0.2), true, Some(tip));
+        }
+        options.choice.apparent = false;
         let columns = Columns::new(&model, options.choice.clone()).expect("columns");
         let names = columns.unknowns.iter().map(|unknown| unknown.name.clone()).collect();
         let base = BaseParameters::of_columns(&stacked(&columns, 60).expect("rows"), names);
@@ -139,9 +153,28 @@ fn wrong_options_are_named() {
     let options = ExciteOptions::new(&model, 10.0);
     let error = |options: ExciteOptions| excite(&model, &options, &|| false).expect_err("wrong").to_string();
     assert!(error(ExciteOptions { duration: -1.0, ..options.clone() }).contains("the duration is -1 s"));
+    for rate in [0.0, -5.0, f64::INFINITY] {
+        assert!(error(ExciteOptions { rate, ..options.clone() }).contains("the rate is "));
+    }
+    let frame = model.frame(model.description().links[1].name.as_str()).expect("a link");
+    let mut apart = options.clone();
+    apart.limits.apart = vec![(Sphere { frame, radius: 0.1 }, Sphere { frame, radius: -1.0 })];
+    assert!(error(apart).contains("a radius is -1 m"));
+    let mut still = options.clone();
+    still.limits.position = vec![[0.0, 0.0]; 2];
+    assert!(error(still).contains("the range of every joint is 0"));
     assert!(error(ExciteOptions { harmonics: 0, ..options.clone() }).contains("harmonics is 0"));
     assert!(error(ExciteOptions { start: Some(vec![0.0]), ..options.clone() }).contains("the start is [0.0]"));
     assert!(error(ExciteOptions { noise: vec![0.0, 1.0], ..options }).contains("the noise"));
+}
+
+#[test]
+fn a_joint_that_stays_has_no_condition_number() {
+    let model = robot("double_pendulum");
+    let mut options = ExciteOptions::new(&model, 2.0);
+    (options.starts, options.iterations) = (1, 1);
+    options.limits.position[1] = [0.3, 0.3];
+    assert_eq!(excite(&model, &options, &|| false).expect("a motion").condition, f64::INFINITY);
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn of_all(log: &str, residuals: &[Residual], step: f64) -> Option<Finding> {
 fn of_one(log: &str, residuals: &[Residual], step: f64) -> Option<Finding> {
     let is_own = |&j: &usize| {
         let mut others: Vec<f64> = (0..residuals.len()).filter(|&i| i != j).map(|i| residuals[i].lag).collect();
-        others.sort_by(f64::total_cmp);
+        others.sort_unstable_by(f64::total_cmp);
         let Some(&median) = others.get(others.len() / 2).filter(|_| others.len() > 1) else { return false };
         let apart = |i: usize| (residuals[i].lag - median).abs();
         let sure = |i: usize| (apart(i) - residuals[i].lag_deviation).max(0.0);

@@ -57,7 +57,7 @@ pub fn judge(found: &Identification<'_>, logs: &[Log]) -> Result<Judgement, Erro
             findings.extend(lag::check(&log.name, &above_rounding, 1.0 / samples.rate));
         }
         findings.extend(refitted);
-        findings.extend(colour(&log.name, &above_rounding));
+        findings.extend(colour(&log.name, &above_rounding, samples.count() as f64 * samples.independent()));
         findings.extend(unexplained(&log.name, &all));
         findings.extend(blunted(&log.name, samples, columns));
         residuals.push(all);
@@ -193,9 +193,11 @@ fn blunted(log: &str, samples: &Samples, columns: &Columns<'_>) -> Option<Findin
 }
 
 /// Residuals that are no noise make deviations too small.
-fn colour(log: &str, residuals: &[Residual]) -> Option<Finding> {
+fn colour(log: &str, residuals: &[Residual], independent: f64) -> Option<Finding> {
+    /// That of noise is within two of its deviations, 1/√N of N independent samples.
     const HIGH: f64 = 0.5;
-    let coloured: Vec<&Residual> = residuals.iter().filter(|r| r.autocorrelation > HIGH).collect();
+    let high = HIGH + 2.0 / independent.max(1.0).sqrt();
+    let coloured: Vec<&Residual> = residuals.iter().filter(|r| r.autocorrelation > high).collect();
     let most = coloured.iter().map(|r| r.autocorrelation).fold(0.0, f64::max).min(0.99);
     let factor = coloured.iter().map(|r| r.colour()).fold(1.0, f64::max);
     (!coloured.is_empty()).then(|| {

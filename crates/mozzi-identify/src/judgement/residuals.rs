@@ -47,7 +47,7 @@ impl Residual {
             force: mean_square(&measured).sqrt(),
             rmse: mean_square(&residual).sqrt(),
             peak: Spectrum::new(&residual, samples.rate).peak(),
-            autocorrelation: autocorrelation(&residual, (1.0 / samples.independent()).round() as usize),
+            autocorrelation: autocorrelation(&residual, samples.apart()),
             lag: along / square,
             lag_deviation: (variance / square).sqrt(),
         }

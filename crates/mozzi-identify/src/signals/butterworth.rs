@@ -15,6 +15,9 @@ pub struct LowPass {
     sections: Vec<Section>,
     /// Rows by which a signal is continued at each end.
     padding: usize,
+    order: usize,
+    /// tan(πf_c/r).
+    w: f64,
 }
 
 impl LowPass {
@@ -42,7 +45,20 @@ impl LowPass {
             Section { b: w * w / size, a: [2.0 * (w * w - 1.0) / size, (1.0 - damping * w + w * w) / size] }
         };
         let padding = ((3.0 * rate / cutoff) as usize).max(3 * (order + 1));
-        Ok(LowPass { sections: (0..order / 2).map(section).collect(), padding })
+        Ok(LowPass { sections: (0..order / 2).map(section).collect(), padding, order, w })
+    }
+
+    /// The share of white noise's power that passes forwards and backwards, (1/π) ∫₀^π |H|⁴ dω with |H|² = 1/(1 +
+    /// (u/w)^2·order), u = tan ω/2: about (1 − 1/(2 order)) 2f_c/r.
+    pub fn noise(&self) -> f64 {
+        const STEPS: usize = 2000;
+        let at = |k: usize| {
+            let x = (k as f64 + 0.5) / STEPS as f64;
+            let ratio = x / (1.0 - x); // u/w, from 0 to ∞
+            let u = self.w * ratio;
+            self.w / ((1.0 - x) * (1.0 - x) * (1.0 + u * u) * (1.0 + ratio.powi(2 * self.order as i32)).powi(2))
+        };
+        core::f64::consts::FRAC_2_PI * (0..STEPS).map(at).sum::<f64>() / STEPS as f64
     }
 
     /// Filters a signal forwards and backwards in place. At each end it is continued by its point reflection.
@@ -95,6 +111,18 @@ mod tests {
             let gain = 1.0 / (1.0 + ratio.powi(2 * order as i32));
             let error = (500..1500).map(|k| (x[k] - gain * wave(k)).abs()).fold(0.0, f64::max);
             assert!(error < 1e-9, "{f} Hz: {error:e}");
+        }
+    }
+
+    #[test]
+    fn the_share_of_noise_is_the_power_of_an_impulse() {
+        for (order, cutoff) in [(4, 5.0), (2, 1.0), (8, 30.0)] {
+            let filter = LowPass::new(order, cutoff, 100.0).expect("an order and a cut-off");
+            let mut x = vec![0.0; 4001];
+            x[2000] = 1.0;
+            filter.filter(&mut x);
+            let power: f64 = x.iter().map(|x| x * x).sum();
+            assert!((filter.noise() / power - 1.0).abs() < 1e-6, "{order}: {} and {power}", filter.noise());
         }
     }
 

@@ -3,6 +3,7 @@
 pub mod butterworth;
 mod cutoff;
 mod quaternions;
+mod shape;
 pub mod smoothing_spline;
 pub mod spectrum;
 
@@ -14,6 +15,7 @@ use crate::{Error, Finding, Level, Log, rotors};
 use butterworth::LowPass;
 use mozzi::{FrameId, Freedom, Model, SpatialInertia, Wrench};
 pub(crate) use quaternions::{continuous, differentiate, normalize};
+pub use shape::Shape;
 use smoothing_spline::SmoothingSpline;
 
 /// Where the low-pass filter's gain is ½.
@@ -59,34 +61,6 @@ impl Default for Filter {
     }
 }
 
-/// Dry friction of unit size as a function of velocity: tanh(θ̇/w), and with Stribeck's velocity exp(−(θ̇/v)²)
-/// tanh(θ̇/w).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shape {
-    /// w, rad/s or m/s.
-    pub width: f64,
-    /// v, rad/s or m/s.
-    pub stribeck: Option<f64>,
-}
-
-impl Default for Shape {
-    fn default() -> Self {
-        Shape { width: 0.05, stribeck: None }
-    }
-}
-
-impl Shape {
-    /// tanh(θ̇/w).
-    pub fn coulomb(&self, dtheta: f64) -> f64 {
-        (dtheta / self.width).tanh()
-    }
-
-    /// exp(−(θ̇/v)²) tanh(θ̇/w), 0 without v.
-    pub fn stribeck(&self, dtheta: f64) -> f64 {
-        self.stribeck.map_or(0.0, |v| (-(dtheta / v).powi(2)).exp() * self.coulomb(dtheta))
-    }
-}
-
 /// Evenly spaced states with their forces, by rows.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
@@ -117,6 +91,8 @@ pub struct Samples {
     pub rate: f64,
     /// The cut-off, Hz, if the signals were filtered.
     pub cutoff: Option<f64>,
+    /// The share of white noise's power that the filter passed, times the rows for one that is kept.
+    pub passed: Option<f64>,
     /// Power of forces above the cut-off, which the filter removed, by joint: an estimate of the noise's, N² m².
     pub removed: Vec<f64>,
 }
@@ -133,9 +109,15 @@ impl Samples {
         self.wrenches.iter().map(|(frame, table)| (*frame, wrench(table))).collect()
     }
 
-    /// The share of independent samples: neighbours that a filter of cut-off f_c made alike count as 2 f_c / rate.
+    /// The share of independent samples: white noise loses this share of its power by the filter, but none at the
+    /// frequencies of the motion.
     pub fn independent(&self) -> f64 {
-        self.cutoff.map_or(1.0, |cutoff| (2.0 * cutoff / self.rate).min(1.0))
+        self.passed.unwrap_or(1.0).min(1.0)
+    }
+
+    /// Rows from a sample to the next that a filter of cut-off f_c did not make alike: rate/2f_c.
+    pub fn apart(&self) -> usize {
+        self.cutoff.map_or(1.0, |cutoff| (0.5 * self.rate / cutoff).round().max(1.0)) as usize
     }
 }
 
@@ -165,6 +147,9 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
         }
     };
     let low_pass = cutoff.map(|f| LowPass::new(filter.order, f, rate)).transpose()?;
+    // the spline's gain is 1/(1 + (f/f_c)⁴), that of a filter of order 2
+    let order = if filter.acceleration == Acceleration::Spline { 2 } else { filter.order };
+    let passed = cutoff.map(|f| Ok::<_, Error>(LowPass::new(order, f, rate)?.noise())).transpose()?;
     rows.bridge(&log, cutoff, &mut findings);
     let two_periods = cutoff.map_or(0.0, |f| (2.0 * rate / f).ceil());
     let trim = two_periods as usize; // what the ends of a filtered run are worth
@@ -182,6 +167,7 @@ pub fn prepare(model: &Model, log: &Log, filter: &Filter) -> Result<(Samples, Ve
     let mut samples = Samples {
         rate: rate / stride as f64,
         cutoff,
+        passed: passed.map(|share| share * stride as f64),
         payload: log.payload,
         removed: vec![0.0; model.n()],
         ..Samples::default()

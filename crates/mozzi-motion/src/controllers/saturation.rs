@@ -29,6 +29,8 @@ pub struct Saturated<I> {
     limits: Vec<f64>,
     overloads: Vec<Option<Overload>>,
     own: Vec<f64>,
+    /// The time of the last call, and the overloads before it, if later calls may replace it.
+    before: Option<(f64, Vec<Option<Overload>>)>,
 }
 
 impl<I: Input> Saturated<I> {
@@ -45,7 +47,15 @@ impl<I: Input> Saturated<I> {
             overloads: vec![None; limits.len()],
             own: vec![0.0; limits.len()],
             limits,
+            before: None,
         }
+    }
+
+    /// For a simulation: a call at the time of the last one, or before it, replaces that one's demands. They were those
+    /// of an iterate, or of a step that is taken again.
+    pub fn of_steps(self) -> Self {
+        let before = Some((f64::NEG_INFINITY, self.overloads.clone()));
+        Saturated { before, ..self }
     }
 
     /// The overload of each joint whose effort limit was exceeded since the start, whether the torque was clamped or
@@ -63,6 +73,14 @@ impl<I: Input> Input for Saturated<I> {
             return Err(mozzi::Error::WrongLength { what: "tau", found, expected }.into());
         }
         self.input.torque(t, theta, dtheta, &mut self.own)?;
+        if let Some((last, before)) = &mut self.before {
+            if t <= *last {
+                self.overloads.clone_from(before);
+            } else {
+                before.clone_from(&self.overloads);
+            }
+            *last = t;
+        }
         for (j, asked) in self.own.iter_mut().enumerate() {
             let limit = self.limits[j];
             if self.policy != Policy::Ignore && asked.abs() > limit {

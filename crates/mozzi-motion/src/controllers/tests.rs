@@ -211,6 +211,13 @@ fn motors_have_limits() {
             assert_eq!((first.joint.as_str(), first.largest, first.limit, first.first, first.last), expected);
         }
     }
+    // a call at an earlier time replaces the demands of the last call
+    let mut motors = Saturated::new(&ur5, ask(), Policy::Report).of_steps();
+    for t in [0.5, 2.0, 1.0] {
+        torque(&mut motors, t, &[0.0; 6], &[0.0; 6]);
+    }
+    let noted: Vec<_> = motors.overloads().map(|of| (of.joint.as_str(), of.largest, of.first, of.last)).collect();
+    assert_eq!(noted, [("shoulder_lift_joint", 400.0, 0.5, 1.0)]);
     // the input's wrenches are passed on
     let tip = ur5.end_effector().expect("named");
     let mut wrenches = Vec::new();

@@ -33,12 +33,8 @@ impl Within for Bounds {
     }
 
     fn clamp(&self, theta: &mut [f64]) {
-        for (place, &[low, high]) in self.places.iter().zip(&self.joints) {
-            match place.freedom {
-                Freedom::One => theta[place.q] = theta[place.q].clamp(low, high),
-                Freedom::Ball if place.bounded_value(theta) > high => place.put_at_limit(theta, high),
-                _ => {}
-            }
+        for k in 0..self.joints.len() {
+            self.put_within(theta, k);
         }
     }
 

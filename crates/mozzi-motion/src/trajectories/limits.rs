@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::error::check;
 use mozzi::Model;
+use mozzi::model::Bounds;
 
 /// Largest excess over a limit, relative to it.
 const EXCESS: f64 = 1e-9;
@@ -32,16 +33,10 @@ impl Limits {
     /// limits of acceleration.
     pub fn of(model: &Model) -> Self {
         let mut limits = Limits::none(model);
-        for (joint, source) in model.moving_joints().zip(model.sources()) {
-            let counts = |limit: &f64| joint.mimic.is_none() || *limit > 0.0; // 0 is written where none is meant
-            let of_source =
-                |limit: Option<f64>| limit.filter(counts).map_or(f64::INFINITY, |limit| limit / source.ratio.abs());
-            for j in model.places()[source.joint].velocities() {
-                limits.velocity[j] = limits.velocity[j].min(of_source(joint.limits.velocity));
-                limits.acceleration[j] = limits.acceleration[j].min(of_source(joint.limits.acceleration));
-            }
-        }
-        for (place, joint) in model.places().iter().zip(model.joints()) {
+        let [velocity, acceleration] = Bounds::of_rates(model);
+        for (k, (place, joint)) in model.places().iter().zip(model.joints()).enumerate() {
+            limits.velocity[place.velocities()].fill(velocity[k]);
+            limits.acceleration[place.velocities()].fill(acceleration[k]);
             limits.torque[place.velocities()].fill(joint.limits.effort.unwrap_or(f64::INFINITY));
         }
         limits

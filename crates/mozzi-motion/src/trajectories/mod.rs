@@ -35,7 +35,7 @@ pub use limits::Limits;
 pub use path::{Line, Path, Point};
 pub use profile::{Profile, Progress};
 pub use recorded::Recorded;
-pub use reference::{Desired, Hold, OfJoints, Reference, Timed};
+pub use reference::{Desired, Hold, OfJoints, Reference, Timed, times};
 pub use spline::{Ends, Spline};
 pub use stretch::stretched;
 pub use time_optimal::time_optimal;

@@ -122,3 +122,12 @@ impl Reference for Hold {
         self.desired.clone()
     }
 }
+
+/// Two times are farther apart, relative to the step.
+const APART: f64 = 1e-9;
+
+/// The multiples of a step before the end of a motion, and the end, s.
+pub fn times(step: f64, duration: f64) -> Vec<f64> {
+    let before = (duration / step - APART).ceil().max(0.0) as usize;
+    (0..before).map(|k| k as f64 * step).chain([duration]).collect()
+}

@@ -25,7 +25,9 @@ from typing import Any, NamedTuple
 
 try:
     import jax
-except ImportError as error:
+except ModuleNotFoundError as error:
+    if error.name != "jax":
+        raise
     raise ImportError("mozzi.jax needs JAX, which is not installed: pip install jax") from error
 
 import jax.extend.core

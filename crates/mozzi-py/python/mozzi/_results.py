@@ -109,12 +109,12 @@ class TrackingError(NamedTuple):
     @property
     def worst(self) -> Any:
         """Largest ``largest`` of all joints: float, or an array of shape (...)."""
-        return self.largest.max(-1)
+        return self.largest.max(-1, initial=0.0)
 
     @property
     def worst_rms(self) -> Any:
         """Largest ``rms`` of all joints: float, or an array of shape (...)."""
-        return self.rms.max(-1)
+        return self.rms.max(-1, initial=0.0)
 
 
 class ClosedForm(NamedTuple):

@@ -19,6 +19,7 @@ to its nq numbers: a quaternion's length has no effect, so that its gradient is 
 which results are differentiable: ∂τ/∂π = Y.
 """
 
+import functools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -422,6 +423,53 @@ class Rollout(NamedTuple):
     """Shape (..., N + 1, n): rad/s or m/s."""
 
 
+@functools.partial(jax.jit, static_argnums=(0, 1, 2))
+def _steps(
+    model: Model,
+    method: str,
+    threads: int | None,
+    theta: Array,
+    dtheta: Array,
+    torques: Array,
+    h: Array,
+    parameters: Array | None,
+) -> tuple[Array, Array]:
+    """The states after each step; compiled once for a model, method and shapes."""
+    places = model._quaternions
+
+    def advance(theta: Array, u: Array) -> Array:
+        found: Array = _tangent.advance(jnp, places, theta, u)
+        return found
+
+    def one(state: tuple[Array, Array], tau: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        theta, dtheta = state
+
+        def accelerations(theta: Array, dtheta: Array) -> Array:
+            return forward_dynamics(model, theta, dtheta, tau, parameters=parameters, threads=threads)
+
+        if method == "euler":
+            after = advance(theta, h * dtheta), dtheta + h * accelerations(theta, dtheta)
+        elif method == "semi-implicit-euler":
+            later = dtheta + h * accelerations(theta, dtheta)
+            after = advance(theta, h * later), later
+        else:
+            # θ = θ₀ ⊕ u
+            slopes: list[tuple[Array, Array]] = []
+            u, rates = jnp.zeros_like(dtheta), dtheta
+            for fraction in (0.5, 0.5, 1.0, 0.0):
+                du = _tangent.logarithm_rate(jnp, places, u, rates)
+                ddtheta = accelerations(advance(theta, u), rates) if slopes else accelerations(theta, rates)
+                slopes.append((du, ddtheta))
+                u, rates = fraction * h * du, dtheta + fraction * h * ddtheta
+            (a, da), (b, db), (c, dc), (d, dd) = slopes
+            mean, dmean = (a + 2.0 * (b + c) + d) / 6.0, (da + 2.0 * (db + dc) + dd) / 6.0
+            after = advance(theta, h * mean), dtheta + h * dmean
+        return after, after
+
+    found: tuple[Array, Array] = jax.lax.scan(one, (theta, dtheta), torques)[1]
+    return found
+
+
 def rollout(
     model: Model,
     theta: ArrayLike,
@@ -484,37 +532,6 @@ def rollout(
     one_tau = jnp.zeros((*tau.shape[:-2], model.n), tau.dtype)
     theta, dtheta, *_ = _broadcast(names, [theta, dtheta, one_tau, *inertial], lengths, model)
     parameters = inertial[0] if inertial else None
-    places = model._quaternions
-
-    def advance(theta: Array, u: Array) -> Array:
-        found: Array = _tangent.advance(jnp, places, theta, u)
-        return found
-
-    def one(state: tuple[Array, Array], tau: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        theta, dtheta = state
-
-        def accelerations(theta: Array, dtheta: Array) -> Array:
-            return forward_dynamics(model, theta, dtheta, tau, parameters=parameters, threads=threads)
-
-        if method == "euler":
-            after = advance(theta, h * dtheta), dtheta + h * accelerations(theta, dtheta)
-        elif method == "semi-implicit-euler":
-            later = dtheta + h * accelerations(theta, dtheta)
-            after = advance(theta, h * later), later
-        else:
-            # θ = θ₀ ⊕ u
-            slopes: list[tuple[Array, Array]] = []
-            u, rates = jnp.zeros_like(dtheta), dtheta
-            for fraction in (0.5, 0.5, 1.0, 0.0):
-                du = _tangent.logarithm_rate(jnp, places, u, rates)
-                ddtheta = accelerations(advance(theta, u), rates) if slopes else accelerations(theta, rates)
-                slopes.append((du, ddtheta))
-                u, rates = fraction * h * du, dtheta + fraction * h * ddtheta
-            (a, da), (b, db), (c, dc), (d, dd) = slopes
-            mean, dmean = (a + 2.0 * (b + c) + d) / 6.0, (da + 2.0 * (db + dc) + dd) / 6.0
-            after = advance(theta, h * mean), dtheta + h * dmean
-        return after, after
-
-    _, (later, dlater) = jax.lax.scan(one, (theta, dtheta), torques)
+    later, dlater = _steps(model, method, threads, theta, dtheta, torques, h, parameters)
     tables = (jnp.concatenate([first[None], rest]) for first, rest in ((theta, later), (dtheta, dlater)))
     return Rollout(*(jnp.moveaxis(table, 0, -2) for table in tables))

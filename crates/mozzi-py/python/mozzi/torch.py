@@ -22,7 +22,12 @@ import hashlib
 import math
 import pickle
 
-import torch
+try:
+    import torch
+except ModuleNotFoundError as error:
+    if error.name != "torch":
+        raise
+    raise ImportError("mozzi.torch needs PyTorch, which is not installed: pip install torch") from error
 from torch import Tensor
 from torch._C import _are_functorch_transforms_active as _is_transformed
 from torch._C._functorch import is_legacy_batchedtensor

@@ -111,10 +111,12 @@ impl PyModel {
     }
 
     /// Maximum speed of each joint, shape (joints,), rad/s or m/s; infinite without a limit.
+    ///
+    /// The limits of its mimic joints restrict it, too.
     #[getter]
     fn velocity_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let limits = self.robot().model.joints().map(|joint| joint.limits.velocity.unwrap_or(f64::INFINITY));
-        read_only(array(py, &[self.robot().model.joint_names().len()], limits)?)
+        let [limits, _] = Bounds::of_rates(&self.robot().model);
+        read_only(array(py, &[limits.len()], limits)?)
     }
 
     /// Maximum torque or force of each joint, shape (joints,), N m or N; infinite without a limit.

@@ -3,7 +3,7 @@
 use crate::describe::refused;
 use crate::failure::{LoadWarning, of_file, of_model, warn};
 use crate::model::PyModel;
-use mozzi_urdf::{Written, json, mjcf, sdf};
+use mozzi_urdf::{Written, chosen_end_effector, json, mjcf, named_states, sdf};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -18,11 +18,9 @@ fn written(ending: &str, model: &mozzi::Model) -> PyResult<Written> {
         "xml" => mjcf::write(robot).map_err(|why| not_written(&why)),
         "urdf" => {
             let mut expressible = mozzi_urdf::expressible(robot);
-            let end_effector = expressible.end_effector.take();
+            expressible.end_effector = None;
             let mut found = lossless(mozzi_urdf::write(&expressible).map_err(|why| not_written(&why))?);
-            found.losses.extend(end_effector.map(|name| format!("the choice of the end effector, `{name}`")));
-            let names: Vec<&str> = robot.states.iter().map(|state| state.name.as_str()).collect();
-            found.losses.extend((!names.is_empty()).then(|| format!("the named states {}", names.join(", "))));
+            found.losses.extend(chosen_end_effector(robot).into_iter().chain(named_states(robot)));
             Ok(found)
         }
         other => Err(refused(format!("the path ends in `.{other}`, expected .urdf, .xml (MJCF), .sdf or .json"))),
@@ -64,7 +62,7 @@ impl PyModel {
         let model = model.described().and_then(|robot| robot.build()).map_err(of_model)?;
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let Written { text, losses, remarks } = written(ending, &model)?;
-        std::fs::write(&path, text).map_err(|error| of_file(&path, &error))?;
+        mozzi_report::whole_file::save(&path, text.as_bytes()).map_err(|error| of_file(&path, &error))?;
         let losses = losses.into_iter().map(|loss| format!("{} cannot express {loss}", path.display()));
         for text in losses.chain(remarks.into_iter().map(|remark| format!("{}: {remark}", path.display()))) {
             warn::<LoadWarning>(py, &text, 1)?;

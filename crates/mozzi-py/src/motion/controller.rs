@@ -4,8 +4,7 @@ use super::limits::one_or_each;
 use super::reference::{PyReference, SharedReference};
 use super::repr;
 use super::states::States;
-use crate::array::{shown, wrong_shape};
-use crate::failure::{of_motion, of_state};
+use crate::failure::{of_model, of_motion, of_state};
 use crate::model::PyModel;
 use crate::numpy::Fresh;
 use mozzi::{FrameId, Model, SE3};
@@ -39,17 +38,14 @@ pub(super) enum ControlLaw {
 
 impl PyController {
     pub(super) fn checked(model: Py<PyModel>, reference: Py<PyReference>, law: ControlLaw) -> PyResult<Self> {
-        let (found, expected) = (reference.get().model().nq(), model.get().robot().model.nq());
-        if found != expected {
-            let expected = format!("{}: of the same robot", shown(&[expected]));
-            return Err(wrong_shape("the reference's theta", &[found], expected));
-        }
+        let same = model.get().robot().model.check_same_joints("the reference's robot", reference.get().model());
+        same.map_err(of_model)?;
         let controller = PyController { model, reference, law };
         controller.motors()?;
         Ok(controller)
     }
 
-    fn robot(&self) -> &Model {
+    pub(super) fn robot(&self) -> &Model {
         &self.model.get().robot().model
     }
 

@@ -18,6 +18,7 @@ mod tracking;
 
 pub use instants::Instants;
 use pyo3::prelude::*;
+pub use saturated::check_motors;
 
 /// The classes, in the compiled part.
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,12 +1,14 @@
 //! `mozzi.controllers.Saturated`.
 
+use super::controller::PyController;
 use super::states::States;
 use crate::array::Numbers;
 use crate::describe::refused;
-use crate::failure::of_state;
+use crate::failure::{of_model, of_state};
 use crate::model::PyModel;
 use crate::numpy::Fresh;
 use crate::results::named;
+use mozzi::Model;
 use mozzi_motion::Policy;
 use mozzi_motion::controllers::{Overload, Saturated};
 use mozzi_sim::Input;
@@ -53,6 +55,21 @@ impl Input for Asked {
     }
 }
 
+/// Motors of a controller need the robot's joints.
+///
+/// # Errors
+/// `ValueError` for a controller of another robot.
+pub fn check_motors(robot: &Model, torque: &Bound<'_, PyAny>) -> PyResult<()> {
+    let same = |of: &Model| robot.check_same_joints("the controller's robot", of).map_err(of_model);
+    if let Ok(controller) = torque.cast::<PyController>() {
+        same(controller.get().robot())
+    } else if let Ok(motors) = torque.cast::<PySaturated>() {
+        same(&motors.get().model.get().robot().model)
+    } else {
+        Ok(())
+    }
+}
+
 impl PySaturated {
     fn motors(&self) -> MutexGuard<'_, Saturated<Asked>> {
         self.motors.lock().unwrap_or_else(PoisonError::into_inner)
@@ -75,6 +92,7 @@ impl PySaturated {
             let why = format!("torque is a {kind}, expected a function of (t, theta, dtheta)");
             return Err(pyo3::exceptions::PyTypeError::new_err(why));
         }
+        check_motors(&model.get().robot().model, torque)?;
         let motors = Mutex::new(Saturated::new(&model.get().robot().model, Asked(Vec::new()), policy));
         Ok(PySaturated { torque: torque.clone().unbind(), motors, model })
     }

@@ -1,7 +1,8 @@
 //! `mozzi.controllers.tracking_error`.
 
 use super::reference::PyReference;
-use crate::array::{Numbers, shown, wrong_shape};
+use crate::array::{Numbers, wrong_shape};
+use crate::failure::of_model;
 use crate::model::{PyModel, array};
 use crate::results::named;
 use mozzi_motion::controllers::tracking_error_of_rows;
@@ -47,10 +48,7 @@ pub fn tracking_error<'py>(
         return Err(PyTypeError::new_err(why));
     };
     let model = &model.get().robot().model;
-    if reference.model().nq() != model.nq() {
-        let expected = format!("{}: of the same robot", shown(&[model.nq()]));
-        return Err(wrong_shape("the reference's theta", &[reference.model().nq()], expected));
-    }
+    model.check_same_joints("the reference's robot", reference.model()).map_err(of_model)?;
     let numbers = |name| Numbers::new(name, &motion.getattr(name)?);
     let (mut t, mut theta) = (numbers("t")?, numbers("theta")?);
     let [rows] = t.shape[..] else { return Err(wrong_shape("t", &t.shape, "(rows,)")) };

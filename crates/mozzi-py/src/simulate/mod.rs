@@ -11,6 +11,7 @@ use crate::arguments::Given;
 use crate::array::{Numbers, common_leading, shown};
 use crate::counts;
 use crate::model::PyModel;
+use crate::motion::check_motors;
 use crate::threads::Threads;
 use mozzi::Vec3;
 use mozzi_sim::{Friction, Method, Options, Policy};
@@ -31,6 +32,7 @@ impl<'a, 'py> Torque<'a, 'py> {
     fn new(robot: &PyModel, given: Given<'a, 'py>) -> PyResult<Self> {
         let Some(given) = given else { return Ok(Torque::None) };
         if given.is_callable() {
+            check_motors(&robot.robot().model, given)?;
             return Ok(Torque::Function(given));
         }
         if given.is_instance_of::<PyString>() {

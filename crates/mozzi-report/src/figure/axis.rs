@@ -61,7 +61,13 @@ fn linear([low, high]: [f64; 2], about: f64) -> Vec<(f64, String)> {
     let name = |x: f64| match (1e-4..1e5).contains(&step) {
         true => format!("{x:.decimals$}"),
         false if x == 0.0 => "0".to_string(),
-        false => format!("{x:.1e}").replace(".0e", "e"),
+        false => {
+            // as many digits as tell neighbours apart
+            let places = (x.abs() / step).log10().max(0.0) as usize + 1;
+            let text = format!("{x:.places$e}");
+            let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+            format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
+        }
     };
     let name = |x: f64| name(x).replace('-', "−");
     (first..).map(|k| k as f64 * step).take_while(|x| *x <= high).map(|x| (x, name(x))).collect()
@@ -90,7 +96,7 @@ fn within_a_decade([low, high]: [f64; 2]) -> Vec<(f64, String)> {
 /// number beyond it.
 pub(super) fn without_spikes(values: &[f64]) -> ([f64; 2], [Option<f64>; 2]) {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
+    sorted.sort_unstable_by(f64::total_cmp);
     let (Some(&lowest), Some(&highest)) = (sorted.first(), sorted.last()) else { return ([0.0, 0.0], [None; 2]) };
     let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64).round() as usize];
     let (from, to) = (at(0.005), at(0.995));
@@ -127,6 +133,9 @@ mod tests {
         assert_eq!(names(Scale::Linear, [0.0, 3e-7], 3), ["0", "1e−7", "2e−7", "3e−7"]);
         assert_eq!(names(Scale::Linear, [-6e-16, 6e-16], 3), ["−5e−16", "0", "5e−16"]);
         assert_eq!(names(Scale::Logarithmic, [-3.2, 0.1], 4), ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
+        assert_eq!(names(Scale::Linear, [0.499999, 0.50002], 4), ["5e−1", "5.0001e−1", "5.0002e−1"]);
+        assert_eq!(names(Scale::Linear, [0.500001, 0.500012], 3), ["5.00005e−1", "5.0001e−1"]);
+        assert_eq!(names(Scale::Linear, [1234567.0, 2234567.0], 2), ["1.5e6", "2e6"]);
         // two at least
         assert_eq!(names(Scale::Linear, [3.1, 4.9], 1), ["3.5", "4.0", "4.5"]);
         assert_eq!(names(Scale::Logarithmic, [-0.9, -0.2], 4), ["2·10⁻¹", "3·10⁻¹", "4·10⁻¹", "5·10⁻¹", "6·10⁻¹"]);

@@ -176,6 +176,10 @@ mod tests {
         figure.panels[0].curves[0].points[700][1] = 2e4;
         let svg = figure.svg();
         assert!(svg.contains("▲ 20000") && svg.contains("l-4 6h8Z"), "{svg:.2000}");
+        let mut small = wave(Scale::Linear);
+        small.panels[0].curves[0].points.iter_mut().for_each(|p| p[1] *= 1e-9);
+        small.panels[0].curves[0].points[700][1] = 2e-5;
+        assert!(small.svg().contains("▲ 2e−5"));
         assert!(!svg.contains("stroke-dasharray=\"6 6\"") && svg.contains("stroke-dasharray=\"8 4\""));
         let rings = Curve { name: "start".into(), stroke: Stroke::Rings, points: vec![[0.0, 1.0]], ..Curve::default() };
         let figure = Figure { panels: vec![Panel { curves: vec![rings], ..Panel::default() }], ..Figure::default() };

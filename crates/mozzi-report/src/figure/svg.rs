@@ -2,6 +2,7 @@
 
 use super::{Curve, Figure, Panel, Stroke};
 use crate::markup::{SANS, escaped};
+use mozzi::spatial::Rounded;
 use std::fmt::Write;
 
 /// The width of a paper's page; all lengths are in these units.
@@ -146,7 +147,7 @@ impl Panel {
             let (edge, inside) = if side == 1 { (top, 6.0) } else { (top + h, -6.0) };
             peaks(out, beyond.map(|p| across(p[0])), [edge, inside]);
             let sign = if side == 1 { '▲' } else { '▼' };
-            let name = format!("{sign} {}", format!("{peak:.4}").trim_end_matches('0').trim_end_matches('.'));
+            let name = format!("{sign} {}", Rounded(peak));
             text(
                 out,
                 [left + w - 4.0, edge + if side == 1 { 14.0 } else { -7.0 }],
@@ -167,7 +168,7 @@ impl Panel {
 /// Marks where curves leave the panel, none nearer to another than its width.
 fn peaks(out: &mut String, places: impl Iterator<Item = f64>, [edge, inside]: [f64; 2]) {
     let mut places: Vec<f64> = places.collect();
-    places.sort_by(f64::total_cmp);
+    places.sort_unstable_by(f64::total_cmp);
     let mut last = f64::NEG_INFINITY;
     for x in places {
         if x - last < 9.0 {

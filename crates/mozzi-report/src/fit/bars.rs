@@ -2,6 +2,7 @@
 
 use super::sliding;
 use crate::markup::escaped;
+use crate::text::digits;
 use mozzi_identify::{Identification, Kind};
 use std::fmt::Write as _;
 
@@ -118,16 +119,8 @@ fn svg(bars: &[Bar]) -> String {
     out + "</svg>"
 }
 
-/// Three significant digits.
 fn three(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return format!("{x}");
-    }
-    let digits = 2 - x.abs().log10().floor() as i32;
-    match digits {
-        ..=5 => format!("{x:.*}", digits.max(0) as usize).replace('-', "−"),
-        _ => format!("{x:.1e}").replace('-', "−"),
-    }
+    digits(x, 3).replace('-', "−")
 }
 
 #[cfg(test)]
@@ -144,6 +137,6 @@ mod tests {
         assert!(text.contains(&format!("width=\"{width:.1}\"")), "{text}");
         assert!(text.contains("a&lt;b") && text.contains("2.00 ± 0.500, was 1.00") && text.contains("−1.00"));
         assert_eq!(text.matches("fill-opacity=\"0.3\"").count(), 1, "what the file says is pale");
-        assert_eq!([three(0.012345), three(123.4), three(0.0), three(1.26e-6)], ["0.0123", "123", "0", "1.3e−6"]);
+        assert_eq!([three(0.012345), three(123.4), three(0.0), three(1.26e-6)], ["0.0123", "123", "0", "1.26e−6"]);
     }
 }

@@ -10,6 +10,7 @@ mod tables;
 
 use crate::figure::Figure;
 use crate::markup::escaped;
+use crate::text::digits;
 use mozzi::Model;
 use mozzi_identify::judgement::Judgement;
 use mozzi_identify::{Errors, Finding, Identification, Level, Verdict};
@@ -108,7 +109,8 @@ fn undetermined(judged: &Judgement) -> String {
         .iter()
         .map(|one| {
             let advice = one.advice.as_ref().map(|advice| format!("; {}", escaped(advice))).unwrap_or_default();
-            format!("<li><b>{}</b>: {:.4} ± {:.4}{advice}</li>\n", escaped(&one.name), one.least_squares, one.deviation)
+            let [value, deviation] = [one.least_squares, one.deviation].map(|x| digits(x, 4));
+            format!("<li><b>{}</b>: {value} ± {deviation}{advice}</li>\n", escaped(&one.name))
         })
         .collect();
     format!(

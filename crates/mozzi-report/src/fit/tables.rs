@@ -2,6 +2,7 @@
 
 use super::units;
 use crate::markup::escaped;
+use crate::text::digits;
 use mozzi_identify::judgement::Judgement;
 use mozzi_identify::{Errors, Identification};
 use std::fmt::Write as _;
@@ -44,7 +45,7 @@ fn errors_table(found: &Identification<'_>, errors: &Errors) -> String {
     for (j, name) in found.setup.columns.model.velocity_names().enumerate() {
         let all = [errors.force[j], errors.robot[j], errors.friction[j], errors.least_squares[j], errors.consistent[j]];
         let percent = if errors.force[j] > 0.0 { 100.0 * errors.consistent[j] / errors.force[j] } else { 0.0 };
-        let cells = all.iter().map(|x| format!("{x:.3}"));
+        let cells = all.iter().map(|x| digits(*x, 4));
         rows.push(
             [format!("{name} [{}]", units[j])].into_iter().chain(cells).chain([format!("{percent:.2}")]).collect(),
         );
@@ -64,8 +65,8 @@ fn parameters(found: &Identification<'_>, judged: &Judgement) -> String {
     for (k, unknown) in found.setup.columns.unknowns.iter().enumerate() {
         rows.push(vec![
             format!("{} [{}]", unknown.name, found.setup.columns.unit(k)),
-            format!("{:.5}", unknown.prior),
-            format!("{:.5}", optimum.x[k]),
+            digits(unknown.prior, 6),
+            digits(optimum.x[k], 6),
             judged.standings[k].text(),
             format!("{:.0} %", 100.0 * optimum.prior_share[k]),
         ]);
@@ -78,10 +79,10 @@ fn parameters(found: &Identification<'_>, judged: &Judgement) -> String {
     for one in &judged.parameters {
         base.push(vec![
             one.name.clone(),
-            format!("{:.5}", one.robot),
-            format!("{:.5}", one.least_squares),
-            format!("{:.5}", one.deviation),
-            format!("{:.5}", one.consistent),
+            digits(one.robot, 6),
+            digits(one.least_squares, 6),
+            digits(one.deviation, 6),
+            digits(one.consistent, 6),
             one.advice.clone().unwrap_or_default(),
         ]);
     }

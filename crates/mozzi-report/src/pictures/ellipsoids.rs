@@ -1,6 +1,7 @@
 //! Manipulability and force ellipses in a plane, at some configurations.
 
 use crate::figure::{Curve, Figure, Panel, Stroke};
+use crate::text::digits;
 use mozzi::model::{Freedom, Place};
 use mozzi::nalgebra::{DMatrix, Matrix2, SymmetricEigen, U2, Vector2};
 use mozzi::{Error, FrameId, Model, Vec3};
@@ -62,7 +63,7 @@ pub fn ellipsoids(model: &Model, configurations: &[Vec<f64>], frame: FrameId, pl
     let strongest = most(&|gram| if regular(gram) { 1.0 / sigma(gram).min() } else { 0.0 });
     let metres_a_newton = if strongest > 0.0 { METRES * fastest / strongest } else { 0.0 };
     let velocity = format!("velocities at ‖θ̇‖ = 1: 1 m/s is {METRES} m long");
-    let force = format!("forces at ‖τ‖ = 1: 1 N is {} m long", short(metres_a_newton));
+    let force = format!("forces at ‖τ‖ = 1: 1 N is {} m long", digits(metres_a_newton, 2));
     let mut curves = Vec::new();
     for (points, (center, eigen)) in links.into_iter().zip(&ellipses) {
         curves.push(Curve { points, color: 8, stroke: Stroke::Links, ..Curve::default() });
@@ -116,11 +117,6 @@ fn chain(model: &Model, theta: &[f64], frame: FrameId) -> Result<Vec<Vec3>, Erro
     Ok(points)
 }
 
-/// Two digits.
-fn short(x: f64) -> String {
-    if x == 0.0 { "0".into() } else { format!("{x:.*}", (1.0 - x.abs().log10().floor()).clamp(0.0, 12.0) as usize) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,6 +165,6 @@ mod tests {
 
     #[test]
     fn two_digits_are_shown() {
-        assert_eq!([0.123, 0.00456, 12.3, 0.0].map(short), ["0.12", "0.0046", "12", "0"]);
+        assert_eq!([0.123, 0.00456, 12.3, 0.0].map(|x| digits(x, 2)), ["0.12", "0.0046", "12", "0"]);
     }
 }

@@ -53,6 +53,11 @@ impl Decimals {
         Decimals { is_constant: true, ..Self::with_digits(values, 7) }
     }
 
+    /// As [`of`](Self::of), where a number that would lose its digits is written with an exponent.
+    pub fn kept<'a>(values: impl IntoIterator<Item = &'a f64>) -> Self {
+        Decimals { is_constant: true, ..Self::of(values) }
+    }
+
     /// As [`of`](Self::of), where numbers up to `noise` are rounding errors and shown as 0.
     pub fn above<'a>(noise: f64, values: impl IntoIterator<Item = &'a f64>) -> Self {
         let decimals = Self::of(values.into_iter().filter(|x| x.abs() > noise));
@@ -124,6 +129,19 @@ pub fn about(x: f64) -> String {
         0.0 => "0".to_string(),
         size if (0.01..1000.0).contains(&size) => format!("{x:.2}"),
         _ => format!("{x:.1e}"),
+    }
+}
+
+/// So many significant digits; an exponent if there would be many zeros.
+pub fn digits(x: f64, count: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return (x + 0.0).to_string();
+    }
+    let text = format!("{x:.*e}", count - 1);
+    let exponent = text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
+    match exponent {
+        -4..=6 => format!("{x:.*}", (count as i32 - 1 - exponent).max(0) as usize),
+        _ => text,
     }
 }
 
@@ -298,6 +316,16 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn digits_are_significant() {
+        let of = |x| digits(x, 3);
+        assert_eq!(
+            [0.0, 12345.0, -1.26e-6, 0.00012345, 0.99999].map(of),
+            ["0", "12345", "-1.26e-6", "0.000123", "1.00"]
+        );
+        assert_eq!([1e7, 2.0, f64::INFINITY].map(of), ["1.00e7", "2.00", "inf"]);
+    }
 
     #[test]
     fn small_numbers_keep_their_digits() {

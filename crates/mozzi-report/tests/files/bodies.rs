@@ -4,12 +4,12 @@ use crate::{compare_description, flat, has_cause, of_text, robot};
 use mozzi::{Description, SpatialInertia};
 use mozzi_report::compare::files::{RobotFile, compare_files};
 
-fn place(robot: &Description, link: &str) -> usize {
+pub fn place(robot: &Description, link: &str) -> usize {
     robot.links.iter().position(|each| each.name == link).unwrap()
 }
 
 /// Adds `tool` to `lower`; `center` may move its centre of mass in the frame of `lower`.
-fn merge(robot: &mut Description, center: impl Fn(mozzi::SE3, SpatialInertia) -> SpatialInertia) {
+pub fn merge(robot: &mut Description, center: impl Fn(mozzi::SE3, SpatialInertia) -> SpatialInertia) {
     let (lower, tool) = (place(robot, "lower"), place(robot, "tool"));
     let T = robot.joints.iter().find(|joint| joint.name == "mount").unwrap().origin;
     robot.links[lower].inertia = robot.links[lower].inertia + center(T, robot.links[tool].inertia);
@@ -92,7 +92,7 @@ fn another_density() {
 }
 
 /// Puts `left_` before all names, as where the robot is a part of another.
-fn prefixed(robot: &mut Description) {
+pub fn prefixed(robot: &mut Description) {
     let prefix = |name: &mut String| *name = format!("left_{name}");
     robot.links.iter_mut().for_each(|link| prefix(&mut link.name));
     robot.frames.iter_mut().for_each(|frame| [&mut frame.name, &mut frame.link].into_iter().for_each(prefix));

@@ -1,20 +1,26 @@
 //! Two files of a robot: the causes of their differences.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod actuation;
+mod aligned;
 mod bodies;
 mod constraints;
 mod exchanged;
 mod faults;
 mod frames;
 mod places;
+mod reasons;
 mod rotors;
+mod rounded;
 mod shapes;
 mod starts;
 mod verdict;
 
 use mozzi::Description;
 use mozzi_report::compare::files::{FilesComparison, RobotFile, compare_files};
+use mozzi_urdf::XacroArguments;
 use mozzi_urdf::geometry::{self, geometry};
+use mozzi_urdf::mjcf::actuation_of;
 use std::path::{Path, PathBuf};
 
 fn path(name: &str) -> PathBuf {
@@ -32,6 +38,8 @@ fn robot(name: &str) -> RobotFile {
         inertial_axes,
         shapes,
         has_start: false,
+        has_rates: true,
+        actuation: None,
         path: Some(path),
     }
 }
@@ -44,9 +52,10 @@ fn compare(a: &str, b: &str) -> FilesComparison {
 fn of_text(name: &str, text: &str) -> RobotFile {
     let loaded = mozzi_urdf::parse(name, text).unwrap_or_else(|error| panic!("{error}"));
     let (inertial_axes, shapes) = (loaded.inertial_axes.clone(), Some(geometry::parse(name, text).shapes));
-    let has_start = !name.ends_with(".urdf");
+    let (has_start, has_rates) = (!name.ends_with(".urdf"), !name.ends_with(".xml"));
     let (model, path) = (loaded.build().unwrap(), Some(path(name)));
-    RobotFile { name: name.into(), model, inertial_axes, shapes, has_start, path }
+    let actuation = (!has_rates).then(|| actuation_of(None, name, text.as_bytes(), &XacroArguments::default()));
+    RobotFile { name: name.into(), model, inertial_axes, shapes, has_start, has_rates, actuation, path }
 }
 
 /// a.urdf of a text, and b.urdf, in which these parts are replaced.

@@ -5,7 +5,7 @@ use mozzi::{SO3, Vec3};
 use mozzi_report::compare::files::compare_files;
 
 /// A jib that turns, a trolley that slides along it, a hook that spins below.
-const CRANE: &str = r#"<robot name="crane">
+pub const CRANE: &str = r#"<robot name="crane">
 <link name="base"/>
 <joint name="turn" type="revolute"><parent link="base"/><child link="jib"/><origin xyz="0.1 0 0.2" rpy="0.3 -0.2 0.5"/>
 <axis xyz="0 1 0"/><limit lower="-2" upper="1.5" effort="40" velocity="3"/></joint>
@@ -22,7 +22,7 @@ const CRANE: &str = r#"<robot name="crane">
 <inertia ixx="0.006" ixy="0.0007" ixz="0.0003" iyy="0.007" iyz="0.0002" izz="0.009"/></inertial></link>
 </robot>"#;
 
-const SLIDE: &str = r#"<origin xyz="0.3 0 0.05" rpy="0.1 0.6 -0.4"/>"#;
+pub const SLIDE: &str = r#"<origin xyz="0.3 0 0.05" rpy="0.1 0.6 -0.4"/>"#;
 const SPIN: &str = r#"<origin xyz="0.2 0.1 0"/>"#;
 
 fn is_shown(edits: &[(&str, &str)], words: &str, is_explained: bool) {

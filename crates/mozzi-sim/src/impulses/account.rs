@@ -14,7 +14,8 @@ pub struct OneSidedAccount {
     pub last_residual: f64,
     /// Steps whose residual is above 10⁻⁶: their problem may have no solution.
     pub unsolved: usize,
-    /// How often a step was halved, because its iteration did not contract, or a loop did not close.
+    /// How often a step was halved, because its iteration did not contract, a loop did not close, or the robot would be
+    /// lifted by much energy.
     pub halvings: usize,
     /// Steps of the shortest length whose iteration did not contract; they count.
     pub unsettled: usize,

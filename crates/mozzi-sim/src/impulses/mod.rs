@@ -1,20 +1,21 @@
 //! One-sided forces within a step of a simulation: their rows, their solution, and what is remembered of them.
 
 mod account;
+mod memory;
 mod near;
 mod position;
 mod rebound;
 mod rows;
 
 pub use account::OneSidedAccount;
+pub(crate) use memory::Memory;
 pub(crate) use rows::{Key, System};
 
 use crate::Error;
 use crate::contacts::{ContactForce, Contacts, Surface};
 use crate::factored_mass::FactoredMass;
-use crate::one_sided::Law;
+use crate::one_sided::{Law, Solver};
 use crate::{Friction, Options, Policy};
-use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use mozzi::linalg::Vec3;
 use mozzi::model::{Bounds, Model};
@@ -50,47 +51,18 @@ pub(crate) struct Impulses<'r> {
     pub dry: Vec<usize>,
     /// Stops that act in the present step though they seemed too far away.
     pub passed: Vec<(usize, usize)>,
+    /// Points and planes that do so.
+    pub pressed: Vec<(usize, usize)>,
     /// Contacts at most this far act, m.
     reach: f64,
     pub memory: Memory,
     pub account: OneSidedAccount,
     /// The forces on the planes in the last step, by their pairs; during a step, the impulses of its parts.
     pub forces: Vec<ContactForce>,
+    /// The blocks of the last step that counts, and their solver.
+    last: Option<(Vec<Key>, Solver)>,
     /// That of the last system.
     pub mass: FactoredMass<'r>,
-}
-
-/// The state that a step passes to the next one.
-#[derive(Clone, Default)]
-pub(crate) struct Memory {
-    /// The forces of the last step, in the order of their keys.
-    warm: Vec<(Key, [f64; 3])>,
-    /// Where sticking contact points touch: in the coordinates of the plane.
-    anchors: BTreeMap<(usize, usize), Vec3>,
-    /// The gaps of contacts that rebounded within the step, m.
-    rebounds: BTreeMap<(usize, usize), f64>,
-    /// How far points that came to rest within the step would have to go back, along t₁ and t₂.
-    stopped: BTreeMap<(usize, usize), [f64; 2]>,
-    /// Points within reach for which others of their body act.
-    stands_for: Vec<(usize, usize)>,
-    /// The contacts and stops that carried in the last step, and whether they stick.
-    pub carrying: Vec<(Key, bool)>,
-    /// The contacts and stops that carried since they were near, and whether they stick.
-    pub touching: Vec<(Key, bool)>,
-    /// Joints and sides of stops that were struck and not reported yet.
-    pub struck: Vec<(usize, usize)>,
-}
-
-impl Memory {
-    /// Whether this block of rows acted in the last step.
-    fn acted(&self, key: Key) -> bool {
-        self.warm.binary_search_by_key(&key, |(key, _)| *key).is_ok()
-    }
-
-    /// The forces alone.
-    pub fn guess(self) -> Self {
-        Memory { warm: self.warm, ..Memory::default() }
-    }
 }
 
 /// Impulses of a system.
@@ -185,10 +157,12 @@ impl<'r> Impulses<'r> {
             stops,
             dry,
             passed: Vec::new(),
+            pressed: Vec::new(),
             reach: (g * h * h).max(NEAR),
             memory: Memory::default(),
             account: OneSidedAccount::default(),
             forces: Vec::new(),
+            last: None,
             mass: FactoredMass::new(model),
         }))
     }
@@ -231,7 +205,7 @@ impl<'r> Impulses<'r> {
             }
         }
         for touching in &system.touches {
-            let rebound = self.rebound(touching, before[touching.first], free[touching.first], h);
+            let rebound = self.rebound(system, touching, before[touching.first], free[touching.first], h);
             b[touching.first] -= rebound.map_or(0.0, |rebound| rebound.speed);
         }
         let size = b.amax().max(LEAST);
@@ -265,52 +239,6 @@ impl<'r> Impulses<'r> {
             }
             (p, shifts) = (found.p, shifts + 1);
         }
-    }
-
-    /// Remembers the impulses of a step of h seconds that counts.
-    pub fn keep(&mut self, system: &System, solved: &Solved, h: f64) {
-        self.account.keep(solved.residual, solved.p.len());
-        let Memory { warm, carrying, touching, struck, stands_for, .. } = &mut self.memory;
-        let mut touched = core::mem::take(touching);
-        carrying.clear();
-        warm.clear();
-        let least = CARRIES * solved.free.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
-        for &(key, first, law) in &system.rows {
-            let mut force = [0.0; 3];
-            (0..law.rows()).for_each(|k| force[k] = solved.p[first + k] / h);
-            warm.push((key, force));
-            let carries = solved.p[first] * system.G[(first, first)] > least;
-            let sticks = solved.sticks(system, first, law);
-            match key {
-                Key::Contact(..) => {
-                    let before = touched.iter().find(|(other, _)| *other == key).map(|&(_, sticks)| sticks);
-                    let speed = slip(&solved.u, first);
-                    touching.extend(match before {
-                        Some(true) => Some((key, !(carries && speed > SLIDES))),
-                        Some(false) => Some((key, carries && speed < STICKS)),
-                        None => carries.then_some((key, sticks)),
-                    });
-                }
-                Key::Stop(k, side) => {
-                    let touched = touched.iter().any(|&(other, _)| other == key);
-                    if carries && !touched {
-                        struck.push((k, side));
-                    }
-                    touching.extend((carries || touched).then_some((key, true)));
-                }
-                _ => {}
-            }
-            if carries && matches!(key, Key::Contact(..) | Key::Stop(..)) {
-                carrying.push((key, sticks));
-            }
-        }
-        warm.sort_unstable_by_key(|(key, _)| *key);
-        // what others stand for has not lifted off
-        touched.retain(|(key, _)| matches!(key, Key::Contact(k, plane) if stands_for.contains(&(*k, *plane))));
-        touching.append(&mut touched);
-        self.note_rebounds(system, solved, h);
-        self.note_stopped(system, solved, h);
-        self.add_impulses(system, &solved.p);
     }
 
     /// Contacts that slid and stick at the end of the step move until they stop, after t_s = h|u_t|/(|u_t| − s), with s

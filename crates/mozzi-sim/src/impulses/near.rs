@@ -75,21 +75,23 @@ impl Impulses<'_> {
         for cloud in &self.clouds {
             let [T, T_next] = [theta, next].map(|theta| forward_kinematics(self.model, theta, cloud.frame));
             for (plane, (surface, surface_next)) in now.iter().zip(&later).enumerate() {
+                let is_pressed = |point: usize| self.pressed.contains(&(point, plane));
                 let height = |surface: &Surface, at: Vec3| surface.height(at) - cloud.radius;
                 let reach = if cloud.radius > 0.0 { self.reach.min(SHARE * cloud.radius) } else { self.reach };
-                if height(surface, T * cloud.center).min(height(surface_next, T_next * cloud.center)) > reach {
+                let nearest = height(surface, T * cloud.center).min(height(surface_next, T_next * cloud.center));
+                if nearest > reach && !cloud.points.iter().any(|(point, ..)| is_pressed(*point)) {
                     continue;
                 }
                 let planes = [surface.seen_from(T), surface_next.seen_from(T_next)];
                 let candidate = |&(point, center, radius): &(usize, Vec3, f64)| {
                     let [now, then] = planes.map(|(n, d)| -(n.dot(center) + d));
-                    if now.min(then) - radius > reach {
+                    if now.min(then) - radius > reach && !is_pressed(point) {
                         return None;
                     }
                     let of: &ContactPoint = &self.contacts.points[point];
                     let [now, then] = planes.map(|(n, d)| -(n.dot(of.farthest(n)) + d));
                     let gap = now.min(then);
-                    (gap <= reach).then(|| {
+                    (gap <= reach || is_pressed(point)).then(|| {
                         let key = Key::Contact(point, plane);
                         let acted = self.memory.acted(key);
                         Candidate { point, touch: surface.touch(of, T), gap, acted }

@@ -147,12 +147,13 @@ impl Impulses<'_> {
     ) -> Option<Nearer> {
         let yields: Vec<f64> = open.iter().map(OpenRow::compliance).collect();
         let J = self.jacobian(theta, open);
-        let G = self.delassus(&J);
+        let [G, _] = self.delassus(&J);
         let least = NOISE * G.diagonal().amax() + f64::MIN_POSITIVE;
         let way = |e: &DVector<f64>, r: usize| e[r] * e[r] / (G[(r, r)] + least);
         let size = |e: &DVector<f64>| (0..e.len()).map(|r| way(e, r) / yields[r]).sum::<f64>();
         let before = size(errors);
         let farthest = FARTHEST * FARTHEST * (0..errors.len()).map(|r| way(errors, r)).sum::<f64>();
+        let last = &REGULAR[REGULAR.len() - 1];
         REGULAR.iter().find_map(|regular| {
             let mut sum = G.clone();
             (0..G.nrows()).for_each(|r| sum[(r, r)] += G[(r, r)] * regular * yields[r] + least);
@@ -163,12 +164,14 @@ impl Impulses<'_> {
             }
             let (mut change, mut theta) = (J.tr_mul(&p), theta.to_vec());
             self.mass.divide(change.as_mut_slice());
-            if !(change.amax() <= most) {
-                return None; // a joint with hardly any inertia would turn by anything
-            }
-            integrate(self.model, &mut theta, change.as_slice(), 1.0);
+            let share = match most / change.amax() {
+                enough if enough >= 1.0 => 1.0,
+                less if regular == last => less,
+                _ => return None, // a joint with hardly any inertia would turn by anything
+            };
+            integrate(self.model, &mut theta, change.as_slice(), share);
             let (open, errors) = self.open_rows(t, &theta, pressed);
-            let (left, farthest) = (size(&errors), change.amax());
+            let (left, farthest) = (size(&errors), share * change.amax());
             (left < before).then_some(Nearer { theta, open, errors, halves: left < 0.25 * before, farthest })
         })
     }

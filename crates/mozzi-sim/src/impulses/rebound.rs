@@ -17,19 +17,32 @@ pub(super) struct Rebound {
 }
 
 impl Impulses<'_> {
-    /// With a = (u_free − u₀)/h, the contact touches after t_c, where gap + u₀ t_c + ½ a t_c² = 0, at u_c = u₀ + a t_c;
-    /// it leaves at −e u_c, and goes on with a. None if it does not rebound.
-    pub(super) fn rebound(&self, touching: &Touching, before: f64, free: f64, h: f64) -> Option<Rebound> {
+    /// The contact touches after t_c, where gap + u₀ t_c + ½ a t_c² = 0, at u_c = u₀ + a t_c; it leaves at −e u_c, and
+    /// goes on. Its acceleration a is a_F of the smooth forces and that of the turning row, which an impact changes:
+    /// the law holds along the row at the middle of the step, u⁺ = −e(u + a_F t_c) + a_F(h − t_c), where the impulse
+    /// works. None if it does not rebound.
+    pub(super) fn rebound(
+        &self,
+        system: &System,
+        touching: &Touching,
+        before: f64,
+        free: f64,
+        h: f64,
+    ) -> Option<Rebound> {
         let e = self.contacts.points[touching.pair.0].restitution;
-        let gain = free - before;
-        if e == 0.0 || -before <= REBOUND * (-gain).max(0.0) {
+        if e == 0.0 || -before <= REBOUND * (before - free).max(0.0) {
             return None;
         }
-        let (a, gap) = (gain / h, (touching.gap - 0.5 * h * before).max(0.0)); // the gap at the start
+        let [middle, turns] = [&system.start, &system.turns].map(|u| u[touching.first]);
+        let a_F = (free - turns - middle) / h;
+        let a = a_F + 2.0 * (middle - before) / h;
+        let gap = (touching.gap - 0.5 * h * before).max(0.0); // at the start
         let u_c = -Scalar::sqrt((before * before - 2.0 * a * gap).max(0.0));
-        let rest = h - (2.0 * gap / -(before + u_c)).min(h);
-        let (speed, leaves) = (a * rest - e * u_c, -e * u_c);
-        (speed > 0.0).then(|| Rebound { speed, gap: (leaves * rest + 0.5 * a * rest * rest).max(0.0) })
+        let t_c = 2.0 * gap / -(before + u_c); // it may be a little after the step
+        let (rest, leaves) = ((h - t_c).max(0.0), -e * u_c);
+        let speed = a_F * rest - e * (middle + a_F * t_c) + turns;
+        let after = a_F + 2.0 * turns / h;
+        (speed > 0.0).then(|| Rebound { speed, gap: (leaves * rest + 0.5 * after * rest * rest).max(0.0) })
     }
 
     /// The gaps of contacts that rebounded within the step.
@@ -40,7 +53,7 @@ impl Impulses<'_> {
             let first = touching.first;
             let (comes, goes) = (solved.before[first], solved.u[first]);
             if comes < 0.0 && goes > 0.0 && solved.p[first] > 0.0 {
-                let rebound = self.rebound(touching, comes, solved.free[first], h);
+                let rebound = self.rebound(system, touching, comes, solved.free[first], h);
                 found.extend(rebound.map(|rebound| (touching.pair, rebound.gap)));
             }
         }

@@ -42,6 +42,9 @@ pub(crate) struct System {
     /// J M⁻¹Jᵀ
     pub G: DMatrix<f64>,
     pub touches: Vec<Touching>,
+    /// The velocities along the rows at the start of the step, and what they gain in its second half as the rows turn.
+    pub start: DVector<f64>,
+    pub turns: DVector<f64>,
 }
 
 /// A contact of a system.
@@ -70,6 +73,9 @@ impl System {
 /// A joint that is farther beyond its stop was not stopped, rad or m: what it gains in a step from its acceleration is
 /// less.
 const PASSED: f64 = 1e-4;
+
+/// Joints slower than this press no point into a plane, rad/s or m/s.
+const RESTS: f64 = 1e-7;
 
 /// Rows that act at once: their matrix G has 300 MB.
 const MOST_ROWS: usize = 6000;
@@ -182,22 +188,28 @@ impl Impulses<'_> {
         }
         self.mass.factor(theta, 1.0, diagonal)?;
         let J = DMatrix::from_row_slice(w.len(), n, &rows);
-        let G = self.delassus(&J);
+        let [G, R] = self.delassus(&J);
         let laws: Vec<Law> = blocks.iter().map(|&(_, _, law)| law).collect();
-        let (shifted, solver) = (vec![false; laws.len()], Solver::new(&G, &laws));
-        Ok(System { rows: blocks, shifted, solver, J, w: DVector::from_vec(w), G, touches })
+        let (shifted, mut solver) = (vec![false; laws.len()], Solver::new(&G, &laws, Some(R)));
+        if let Some((_, last)) = self.last.take().filter(|(keys, _)| keys.iter().eq(blocks.iter().map(|(key, ..)| key)))
+        {
+            solver.begin_as(last);
+        }
+        let still = || DVector::zeros(w.len());
+        let (start, turns) = (still(), still());
+        Ok(System { rows: blocks, shifted, solver, J, w: DVector::from_vec(w), G, touches, start, turns })
     }
 
-    /// J M⁻¹Jᵀ: the products of the rows of D^{−½}L⁻ᵀJᵀ.
-    pub fn delassus(&self, J: &DMatrix<f64>) -> DMatrix<f64> {
+    /// G = J M⁻¹Jᵀ and R = D^{−½}L⁻ᵀJᵀ, n × m, with G = RᵀR.
+    pub fn delassus(&self, J: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
         let (n, m) = (self.model.n(), J.nrows());
-        let (mut Y, mut G) = (J.transpose(), DMatrix::zeros(m, m));
+        let (mut R, mut G) = (J.transpose(), DMatrix::zeros(m, m));
         // what is not 0, of one row after the other, and where each ends
         let (mut entries, mut ends) = (Vec::with_capacity(m * n), Vec::with_capacity(m + 1));
         let mut support = Support::default();
         ends.push(0);
         for a in 0..m {
-            let (before, rest) = Y.as_mut_slice().split_at_mut(a * n);
+            let (before, rest) = R.as_mut_slice().split_at_mut(a * n);
             let y = &mut rest[..n];
             self.mass.halve(y, &mut support);
             entries.extend(support.places.iter().map(|&k| (k, y[k])));
@@ -210,7 +222,7 @@ impl Impulses<'_> {
                 (G[(a, b)], G[(b, a)]) = (product, product);
             }
         }
-        G
+        [G, R]
     }
 
     /// A contact point next to a plane.
@@ -241,14 +253,25 @@ impl Impulses<'_> {
         })
     }
 
-    /// Adds the stops that a step would pass without being stopped, where a joint with little inertia becomes fast
-    /// within it; false if there are none.
-    pub fn add_passed(&mut self, system: &System, theta: &[f64]) -> bool {
+    /// Adds the stops and planes that a step which ends at (t, θ) would pass without being stopped, where a link with
+    /// little inertia becomes fast within it; false if there are none.
+    pub fn add_passed(&mut self, system: &System, t: f64, theta: &[f64], dtheta: &[f64]) -> bool {
         let acts = |k: usize, side: usize| system.rows.iter().any(|&(key, ..)| key == Key::Stop(k, side));
         let is_passed = |&&(k, side): &&(usize, usize)| self.room(theta, k, side) < -PASSED && !acts(k, side);
         let found: Vec<(usize, usize)> = self.sides().iter().filter(is_passed).copied().collect();
         self.passed.extend(&found);
-        !found.is_empty()
+        if dtheta.iter().all(|rate| rate.abs() < RESTS) {
+            return !found.is_empty();
+        }
+        let touches = |pair| {
+            let known = self.pressed.iter().chain(&self.memory.stands_for);
+            system.touches.iter().map(|touching| &touching.pair).chain(known).any(|other| *other == pair)
+        };
+        let near = self.near([t, t], theta, theta).acting.into_iter();
+        let deep = near.filter(|(.., touch)| touch.gap < -self.reach).map(|(point, plane, _)| (point, plane));
+        let pressed: Vec<(usize, usize)> = deep.filter(|&pair| !touches(pair)).collect();
+        self.pressed.extend(&pressed);
+        !(found.is_empty() && pressed.is_empty())
     }
 
     /// True if a joint is farther beyond a stop than a start may be.

@@ -1,7 +1,7 @@
 //! Steps with dry friction, contacts and stops.
 
 use crate::Error;
-use crate::contacts::{ContactChange, ContactEvent};
+use crate::contacts::ContactEvent;
 use crate::course::{Course, Integrator};
 use crate::impulses::{Impulses, Key};
 use crate::methods::moreau::Phase;
@@ -28,35 +28,6 @@ impl Course<'_> {
         self.driven.equation.find_tau(*t, theta, dtheta)
     }
 
-    /// Records which contacts have begun or ceased to carry or to slide.
-    fn note_contacts(&mut self, t: f64) {
-        let Some(impulses) = self.impulses.as_deref() else { return };
-        let mut now = impulses.memory.touching.clone();
-        now.retain(|(key, _)| matches!(key, Key::Contact(..)));
-        if now == self.touching {
-            return;
-        }
-        let state = |list: &[(Key, bool)], key: Key| list.iter().find(|(other, _)| *other == key).map(|(_, s)| *s);
-        let mut keys: Vec<Key> = now.iter().chain(&self.touching).map(|(key, _)| *key).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        for key in keys {
-            let change = match (state(&self.touching, key), state(&now, key)) {
-                (None, Some(_)) => ContactChange::TouchDown,
-                (Some(_), None) => ContactChange::LiftOff,
-                (Some(false), Some(true)) => ContactChange::Sticks,
-                (Some(true), Some(false)) => ContactChange::Slides,
-                _ => continue,
-            };
-            let Key::Contact(point, plane) = key else { continue };
-            let contact = impulses.contacts.name(point, plane);
-            if self.ending.contact_events.len() < MOST_EVENTS {
-                self.ending.contact_events.push(ContactEvent { t, contact, change });
-            }
-        }
-        self.touching = now;
-    }
-
     /// A step of h seconds, which ends at a time.
     pub(crate) fn impulse_step(&mut self, h: f64, end: f64) -> Result<(), Error> {
         self.impulses_over(h)?;
@@ -65,7 +36,15 @@ impl Course<'_> {
         for (k, side) in impulses.memory.struck.drain(..) {
             self.stops.note_impulse(end, k, side);
         }
-        self.note_contacts(end);
+        let mut changes = core::mem::take(&mut impulses.memory.changes);
+        changes.sort_by_key(|&(key, _)| key);
+        for (key, change) in changes {
+            let Key::Contact(point, plane) = key else { continue };
+            if self.ending.contact_events.len() < MOST_EVENTS {
+                let contact = impulses.contacts.name(point, plane);
+                self.ending.contact_events.push(ContactEvent { t: end, contact, change });
+            }
+        }
         Ok(())
     }
 

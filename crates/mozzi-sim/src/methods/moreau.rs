@@ -129,8 +129,9 @@ impl Moreau {
         let mut rest = h;
         for division in 0..=DIVISIONS {
             impulses.passed.clear();
+            impulses.pressed.clear();
             let mut trial = self.trial(equation, impulses, state, rest, &[])?;
-            while impulses.add_passed(&trial.system, &trial.to.theta) {
+            while impulses.add_passed(&trial.system, end, &trial.to.theta, &trial.to.dtheta) {
                 trial = self.trial(equation, impulses, state, rest, &[])?;
             }
             if !trial.settles {
@@ -141,11 +142,11 @@ impl Moreau {
             }
             let stopping = if division < DIVISIONS { stopping(&trial, state) } else { Vec::new() };
             let Some((s, trial_there)) = self.first_rest(equation, impulses, state, rest, &stopping)? else {
-                commit(impulses, state, &trial);
+                commit(impulses, state, trial);
                 break;
             };
             let at_rest = at_rest(state);
-            commit(impulses, state, &trial_there);
+            commit(impulses, state, trial_there);
             for &j in &stopping {
                 if state.dtheta[j].abs() < at_rest {
                     state.dtheta[j] = 0.0;
@@ -243,6 +244,7 @@ impl Moreau {
         let mut system =
             impulses.system(middle, &theta, [&state.theta, &state.dtheta, &next], h, &diagonal, sliding)?;
         let before = impulses.relative_at(&system, state.t, &state.theta, &state.dtheta);
+        system.start = system.relative(&v);
         let mut p = impulses.guess(&system, h);
         let (mut v_m, mut force) = (v.clone(), vec![0.0; n]);
         let (mut after, mut last, mut solved, mut given) = (v.clone(), v.clone(), None, 0.0);
@@ -260,9 +262,9 @@ impl Moreau {
             if !system.rows.is_empty() {
                 // the laws hold for the velocities at the end, where the rows differ from those at the middle
                 end_of(model, state, &v, &after, h, &mut to);
-                let differs = impulses.relative_at(&system, end, &to.theta, &to.dtheta) - system.relative(&after);
+                system.turns = impulses.relative_at(&system, end, &to.theta, &to.dtheta) - system.relative(&after);
                 add(&v, &force, &mut after);
-                let b = system.relative(&after) + differs;
+                let b = system.relative(&after) + &system.turns;
                 let found = impulses.solve(&mut system, b, &before, &p, h);
                 impulses.apply(&system, &found.p, &mut after);
                 p.copy_from(&found.p);
@@ -345,7 +347,7 @@ fn stopping(trial: &Trial, state: &Phase) -> Vec<usize> {
 }
 
 /// Takes the step.
-fn commit(impulses: &mut Impulses<'_>, state: &mut Phase, trial: &Trial) {
-    state.clone_from(&trial.to);
-    impulses.keep(&trial.system, &trial.solved, trial.h);
+fn commit(impulses: &mut Impulses<'_>, state: &mut Phase, trial: Trial) {
+    *state = trial.to;
+    impulses.keep(trial.system, &trial.solved, trial.h);
 }

@@ -3,7 +3,7 @@
 
 use super::Problem;
 use mozzi::scalar::Scalar;
-use nalgebra::{DVector, Dyn, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// The proximal weight, relative to the largest eigenvalue.
 const PROXIMAL: f64 = 1e-9;
@@ -18,22 +18,36 @@ pub(super) struct Admm {
     rho: f64,
     /// The largest eigenvalue of G.
     largest: f64,
-    spectrum: SymmetricEigen<f64, Dyn>,
+    /// G = W Wᵀ, with orthogonal columns, and their squares λ.
+    W: DMatrix<f64>,
+    squares: DVector<f64>,
     iterations: usize,
     done: bool,
 }
 
 impl Admm {
-    pub fn new(problem: &Problem, guess: &DVector<f64>) -> Self {
-        let spectrum = problem.G.clone().symmetric_eigen();
-        let values = &spectrum.eigenvalues;
-        let largest = values.max().max(f64::MIN_POSITIVE);
-        let positive = values.iter().filter(|x| **x > 1e-9 * largest).fold(largest, |least, x| least.min(*x));
+    /// With R of G = RᵀR, n × m, if it is known.
+    pub fn new(problem: &Problem, root: Option<&DMatrix<f64>>, guess: &DVector<f64>) -> Self {
+        let (W, squares) = match root {
+            Some(R) if R.nrows() < R.ncols() => {
+                let SymmetricEigen { eigenvectors: Q, eigenvalues } = (R * R.transpose()).symmetric_eigen();
+                (R.tr_mul(&Q), eigenvalues)
+            }
+            _ => {
+                let SymmetricEigen { eigenvectors: mut Q, eigenvalues } = problem.G.clone().symmetric_eigen();
+                for (mut column, value) in Q.column_iter_mut().zip(&eigenvalues) {
+                    column *= Scalar::sqrt(value.max(0.0));
+                }
+                (Q, eigenvalues)
+            }
+        };
+        let largest = squares.max().max(f64::MIN_POSITIVE);
+        let positive = squares.iter().filter(|x| **x > 1e-9 * largest).fold(largest, |least, x| least.min(*x));
         let rho = Scalar::sqrt(positive.max(1e-3 * largest) * largest);
         let mut y = guess.clone();
         problem.project(&mut y);
         let z = problem.velocity(guess);
-        Admm { p: guess.clone(), y, z, rho, largest, spectrum, iterations: 0, done: false }
+        Admm { p: guess.clone(), y, z, rho, largest, W, squares, iterations: 0, done: false }
     }
 
     /// The latest impulses that are admissible.
@@ -77,11 +91,10 @@ impl Admm {
         most
     }
 
-    /// (G + shift 1)⁻¹x = Q(Λ + shift 1)⁻¹Qᵀx.
-    fn divided(&self, x: &DVector<f64>, shift: f64) -> DVector<f64> {
-        let SymmetricEigen { eigenvectors: Q, eigenvalues } = &self.spectrum;
-        let mut y = Q.tr_mul(x);
-        y.zip_apply(eigenvalues, |y, value| *y /= value.max(0.0) + shift);
-        Q * y
+    /// (G + s 1)⁻¹x = (x − W(Λ + s)⁻¹Wᵀx)/s.
+    fn divided(&self, x: &DVector<f64>, s: f64) -> DVector<f64> {
+        let mut y = self.W.tr_mul(x);
+        y.zip_apply(&self.squares, |y, square| *y /= square.max(0.0) + s);
+        (x - &self.W * y) / s
     }
 }

@@ -14,6 +14,7 @@
 //! then remains.
 
 mod admm;
+mod derivative;
 mod law;
 mod newton;
 mod point_contact;
@@ -54,9 +55,10 @@ pub struct Solution {
     pub admm_iterations: usize,
 }
 
-/// ε of Newton steps from a good guess, and from any.
-const NEAR: [f64; 6] = [1e-8; 6];
-const FAR: [f64; 25] = {
+/// ε of Newton steps from a good guess, and from any; so many without a better result are the last.
+const NEAR: (&[f64], usize) = (&[1e-8; 6], 2);
+const FAR: (&[f64], usize) = (&WEIGHTS, 12);
+const WEIGHTS: [f64; 25] = {
     let mut weights = [1e-6; 25];
     let mut k = 0;
     while k < 10 {
@@ -116,7 +118,7 @@ fn blocks(laws: &[Law]) -> impl Iterator<Item = (usize, Law)> + '_ {
 /// p − u. It is 0 exactly for a solution. A contact's friction is limited by μ times its own normal argument (Alart
 /// and Curnier 1991): De Saxcé's term μ‖u_t‖ would multiply rounding by μ.
 pub fn residual(problem: &Problem, p: &DVector<f64>) -> f64 {
-    let mut of = Scaled::new(&problem.G, &problem.laws);
+    let mut of = Scaled::new(&problem.G, &problem.laws, None);
     of.begin(&problem.b, p);
     of.residual
 }
@@ -134,28 +136,38 @@ fn residual_with(problem: &Problem, factors: &[f64], p: &DVector<f64>) -> f64 {
 /// # Panics
 /// When the guess is not m long.
 pub fn solve(problem: &Problem, guess: &DVector<f64>, tolerances: [f64; 2]) -> Solution {
-    Solver::new(&problem.G, &problem.laws).solve(&problem.b, guess, tolerances)
+    Solver::new(&problem.G, &problem.laws, None).solve(&problem.b, guess, tolerances)
 }
 
 /// One G and its laws, for one b after the other.
 pub(crate) struct Solver {
     is_finite: bool,
     of: Scaled,
-    /// The last derivative of Newton's method.
-    derivative: Option<newton::Derivative>,
+    /// The last derivative of Newton's method: its own, or that of a problem near this one.
+    derivative: Option<derivative::Derivative>,
     /// True after a search that did not find enough: the next one, from its best, has one round of the last method.
     is_hard: bool,
+    /// True after a search that found enough, but was not close: sweeps do not help the next one.
+    is_redundant: bool,
 }
 
 impl Solver {
-    pub fn new(G: &DMatrix<f64>, laws: &[Law]) -> Self {
+    /// With R of G = RᵀR, n × m, if it is known.
+    pub fn new(G: &DMatrix<f64>, laws: &[Law], root: Option<DMatrix<f64>>) -> Self {
         let is_finite = G.iter().all(|x| x.is_finite());
-        Solver { is_finite, of: Scaled::new(G, laws), derivative: None, is_hard: false }
+        Solver { is_finite, of: Scaled::new(G, laws, root), derivative: None, is_hard: false, is_redundant: false }
+    }
+
+    /// Begins with the derivative of a solver for nearly this G and these laws.
+    pub fn begin_as(&mut self, other: Solver) {
+        if self.of.is_scaled_as(&other.of) {
+            (self.derivative, self.is_redundant) = (other.derivative, other.is_redundant);
+        }
     }
 
     /// As [`solve`].
     pub fn solve(&mut self, b: &DVector<f64>, guess: &DVector<f64>, [sought, enough]: [f64; 2]) -> Solution {
-        let Solver { is_finite, of, derivative, is_hard } = self;
+        let Solver { is_finite, of, derivative, is_hard, is_redundant } = self;
         let m = b.len();
         assert!(guess.len() == m, "the guess has {} entries, expected {m}", guess.len());
         let mut found = Solution { p: guess.clone(), residual: 0.0, newton_steps: 0, sweeps: 0, admm_iterations: 0 };
@@ -170,32 +182,33 @@ impl Solver {
         if !of.residual.is_finite() {
             of.begin(b, &DVector::zeros(m));
         }
-        let mut newton = |of: &mut Scaled, p: DVector<f64>, weights: &[f64]| {
-            found.newton_steps += newton::newton(of, derivative, p, weights, sought);
+        let mut newton = |of: &mut Scaled, p: DVector<f64>, schedule: (&[f64], usize)| {
+            found.newton_steps += newton::newton(of, derivative, p, schedule, sought);
         };
-        newton(of, of.best.clone(), &NEAR);
+        newton(of, of.best.clone(), NEAR);
         if of.residual > CLOSE * sought {
-            newton(of, of.best.clone(), &FAR);
+            newton(of, of.best.clone(), FAR);
         }
-        if of.residual > enough.min(CLOSE * sought) {
+        if of.residual > if *is_redundant { enough } else { enough.min(CLOSE * sought) } {
             let mut p = of.best.clone();
             found.sweeps = sweeps::sweep(&of.problem, &mut p, sought, SWEEPS);
             of.offer(&p);
-            newton(of, p, &NEAR);
+            newton(of, p, NEAR);
         }
         if of.residual > enough {
-            let mut method = admm::Admm::new(&of.problem, &of.best);
+            let mut method = admm::Admm::new(&of.problem, of.root.as_ref(), &of.best);
             for _ in 0..if *is_hard { 1 } else { ADMM_ROUNDS } {
                 found.admm_iterations += method.iterate(&of.problem, sought, ADMM_CHUNK);
                 let p = method.impulses().clone();
                 of.offer(&p);
-                newton(of, p, &FAR);
+                newton(of, p, FAR);
                 if of.residual <= enough || method.is_done() {
                     break;
                 }
             }
             *is_hard = of.residual > enough;
         }
+        *is_redundant = of.residual > CLOSE * sought;
         (found.p, found.residual) = (of.impulses(), of.residual);
         found
     }

@@ -166,7 +166,7 @@ fn three_methods_find_the_same_velocities() {
         let newton = solve(&problem, &zeros(&problem), [1e-12, 1e-8]).p;
         let mut by_sweeps = zeros(&problem);
         sweeps::sweep(&problem, &mut by_sweeps, 1e-14, 3000);
-        let mut method = admm::Admm::new(&problem, &zeros(&problem));
+        let mut method = admm::Admm::new(&problem, None, &zeros(&problem));
         method.iterate(&problem, 1e-13, 5000);
         let by_admm = method.impulses();
         // the solution for friction is not unique in general: compare where all three solve the problem
@@ -218,4 +218,35 @@ fn sticking_is_found_among_redundant_contacts() {
     assert!(found.residual < 1e-13 && problem.velocity(&found.p).amax() < 1e-12 && found.newton_steps <= 3);
     let normal: f64 = (0..4).map(|k| found.p[3 * k]).sum();
     assert!((normal - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn systems_of_many_rows_are_those_of_few_velocities() {
+    let (mut random, mut slides, mut apart, mut left) = (Random(17), 0, 0.0_f64, 0.0_f64);
+    for k in 0..60 {
+        let Problem { G, b, laws } = contacts(&mut random, 10, 5, [0.3, 1.0, 100.0][k % 3]);
+        let spectrum = G.clone().symmetric_eigen();
+        let mut R = spectrum.eigenvectors.transpose();
+        for (mut row, value) in R.row_iter_mut().zip(&spectrum.eigenvalues) {
+            row *= value.max(0.0).sqrt();
+        }
+        let kept: Vec<usize> =
+            (0..30).filter(|&k| spectrum.eigenvalues[k] > 1e-12 * spectrum.eigenvalues.max()).collect();
+        let R = R.select_rows(&kept);
+        let mut p = matrix(&mut random, 30, 1).column(0).into_owned();
+        (0..10).for_each(|k| p[3 * k] = p[3 * k].abs());
+        let steps = [None, Some(R)].map(|root| {
+            let mut of = scaled::Scaled::new(&G, &laws, root);
+            of.begin(&b, &p);
+            let p = of.best.clone();
+            let at = newton::Function::at(&of.problem, &p);
+            slides += at.sides.iter().filter(|side| **side == newton::Side::Slides).count();
+            let derivative = derivative::Derivative::new(&of, &p, &at, 1e-6);
+            derivative.step(&of.problem, &p, &at.F, &p).expect("regular")
+        });
+        apart = apart.max((&steps[0] - &steps[1]).amax() / steps[0].amax());
+        left = left.max((&G * (&steps[0] - &steps[1])).amax() / steps[0].amax());
+    }
+    std::println!("{slides} contacts slide; steps {apart:.1e} apart, their velocities {left:.1e}");
+    assert!(slides > 100 && apart < 1e-6 && left < 1e-9);
 }

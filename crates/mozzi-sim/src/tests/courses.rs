@@ -67,6 +67,39 @@ fn limits_are_events_by_their_word() {
     assert!(wrong(&endless, "slide").contains("is no condition, expected a joint"));
 }
 
+/// Within a step of Moreau and Jean works grow with time, so that a motion that ends there keeps its balance.
+#[test]
+fn a_condition_within_a_step_has_its_works() {
+    let model = pendulum(0.5, 0.3);
+    let push = || crate::torque(|_, _, _, tau| tau[0] += 2.0);
+    let options = Options { method: Method::MoreauJean, ..Options::new(1.0, 200) };
+    let whole = simulate(&model, &[1.0], &[0.0], push(), &options).expect("a motion").largest_drift();
+    for target in [0.8, 0.5, 0.3, 0.1, -0.2] {
+        let event = Event::new("there", move |_, theta: &[f64], _: &[f64]| theta[0] - target);
+        let events = vec![Event { stop: true, ..event }];
+        let run = Simulation { events, ..Simulation::new(options) }.run(&model, &[1.0], &[0.0], push());
+        let motion = run.expect("a motion").motion;
+        let drift = motion.largest_drift();
+        assert!((motion.last().theta[0] - target).abs() < 1e-9 && drift < 4.0 * whole, "{target}: {drift:e} {whole:e}");
+    }
+}
+
+/// A limit that a long step passes and comes back from.
+#[test]
+fn adaptive_steps_report_limits_between_their_ends() {
+    let mut robot = pendulum(0.0, 0.0).description().clone();
+    robot.joints[0].limits.position = Some([-0.31, 0.31]);
+    let model = robot.build().expect("sound");
+    let reported = |method| {
+        let options = Options { method, joint_limits: Policy::Report, ..Options::new(3.0, 3000) };
+        let run = Simulation::new(options).run(&model, &[-0.309], &[0.1], Zero).expect("a motion");
+        run.stops.iter().map(|stop| (stop.limit, (stop.first * 1e3).round(), stop.times)).collect::<Vec<_>>()
+    };
+    let expected = reported(Method::RungeKutta4);
+    assert!(expected.len() == 2 && expected[0].2 == 2, "{expected:?}");
+    assert_eq!(reported(Method::DormandPrince { tolerance: 1e-8 }), expected);
+}
+
 #[test]
 fn motors_of_a_loop_hold_it_and_inputs_know_their_robot() {
     let mut description = four_bar().description().clone();

@@ -9,3 +9,4 @@ mod dry_friction;
 mod pinocchio;
 mod robots;
 mod stops;
+mod tossed;

@@ -89,7 +89,7 @@ fn over(error: f64, unit: f64) -> f64 {
 impl Summary {
     fn of(errors: &[f32]) -> Self {
         let mut sorted = errors.to_vec();
-        sorted.sort_by(f32::total_cmp);
+        sorted.sort_unstable_by(f32::total_cmp);
         let at = |share: f64| {
             let place = (share * sorted.len() as f64).ceil() as usize;
             sorted.get(place.clamp(1, sorted.len().max(1)) - 1).map_or(0.0, |&x| f64::from(x))

@@ -1,8 +1,8 @@
 //! Edits an MJCF's texts in place. A value that comes from a default class is written on the element itself.
 
 use super::element::{Editor, Tag};
+use super::inertial::comment_of;
 use super::joint::is_near;
-use super::link::comment_of;
 use super::{EditError, EditedFile, differences, refused, unsupported};
 use crate::XacroArguments;
 use crate::report::finding::Findings;

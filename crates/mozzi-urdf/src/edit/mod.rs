@@ -2,8 +2,8 @@
 //! joints or a floating base. Visuals, comments and unknown elements remain.
 
 pub(crate) mod element;
+pub(crate) mod inertial;
 mod joint;
-mod link;
 mod mjcf;
 mod numbers;
 mod transmission;
@@ -139,9 +139,9 @@ fn editor<'a>(
     for (old, new) in original.links.iter().zip(&edited.links).filter(differ) {
         match root.named("link", &old.name) {
             Some(tag) => {
-                link::set_inertia(tag, new.inertia, &mut editor);
+                inertial::set_inertia(tag, new.inertia, |x| format!("{x:?}"), &mut editor);
                 if keeps_old {
-                    editor.insert_first(tag, &link::comment_of(old.inertia));
+                    editor.insert_first(tag, &inertial::comment_of(old.inertia));
                 }
             }
             None => reasons.push(format!("link `{}` has no element of its own", old.name)),

@@ -15,6 +15,11 @@ const ALLOWED: f64 = 1.3;
 /// The nearest possible inertia is a repair by itself if it changes no moment by more than this part of the largest.
 const ROUNDED: f64 = 0.05;
 
+/// Twins agree to this part of their numbers, which are written with six digits or more.
+const EXACT: f64 = 1e-5;
+/// Links that differ by less may be twins that are not quite alike.
+const CLOSE: f64 = 1e-3;
+
 struct Candidate {
     code: &'static str,
     reason: String,
@@ -32,20 +37,27 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     let (verdict, solid) = (old.verdict(), robot.solid(name).filter(|solid| solid.can_have(old.mass)));
     let misfit = solid.map_or(0.0, |solid| solid.misfit(old));
     let is_possible = verdict.is_physical();
+    let twins: Vec<(String, &Inertial<'_>, SpatialInertia)> = twin::names(name)
+        .into_iter()
+        .filter_map(|name| {
+            let other = robot.inertials.get(&name)?;
+            let G = other.inertia(&other.numbers);
+            (G.mass > 0.0 && G.verdict().is_physical()).then_some((name, other, G))
+        })
+        .collect();
+    if is_possible && let Some(found) = of_twins(inertial, old, &twins) {
+        return Some(made(robot, name, inertial, found, String::new()));
+    }
     if is_possible && (misfit <= DOUBTED || is_placeholder(&inertial.numbers)) {
         return None;
     }
     let nearest = old.nearest_physical()?;
-    let twin = twin::names(name).into_iter().find_map(|name| {
-        let other = robot.inertials.get(&name)?;
-        let G = other.inertia(&other.numbers);
-        (G.mass > 0.0 && G.verdict().is_physical()).then_some((name, other, G))
-    });
+    let twin = twins.first();
     let is_fitting = |G: SpatialInertia| match solid {
         Some(solid) => solid.misfit(G) <= if is_possible { FITTING } else { ALLOWED },
         None => true,
     };
-    let is_alike = |G: SpatialInertia| twin.as_ref().is_some_and(|(.., twin)| alike(G, *twin));
+    let is_alike = |G: SpatialInertia| twin.is_some_and(|(.., twin)| alike(G, *twin));
     let mut best: Option<(f64, Candidate)> = None;
     let mut as_simple: Vec<(f64, String)> = Vec::new();
     let mut consider = |candidate: Candidate| {
@@ -58,7 +70,7 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
         }
         let G = inertial.inertia(&candidate.numbers);
         // the mass is right where the other side has it, or where a smaller one would be that of air
-        let is_kept = twin.as_ref().is_some_and(|(.., twin)| (mass - twin.mass).abs() <= 0.01 * twin.mass);
+        let is_kept = twin.is_some_and(|(.., twin)| (mass - twin.mass).abs() <= 0.01 * twin.mass);
         let is_air = solid.is_some_and(|solid| !solid.may_weigh(new.mass));
         if new.mass != mass && (is_kept || is_air) {
             return;
@@ -78,7 +90,7 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     };
     let is_negative = [0, 3, 5].iter().any(|&k| inertial.numbers.moments[k] < 0.0);
     let is_rounded = !is_possible && !is_negative && moved(old, nearest) <= ROUNDED;
-    let mirrored = twin.as_ref().and_then(|(name, other, _)| mirrored(inertial, name, other));
+    let mirrored = twin.and_then(|(name, other, _)| mirrored(inertial, name, other));
     let all = all(inertial, old).into_iter().chain(mirrored);
     // of numbers that are off by little, only those of the twin are better than the nearest possible ones
     let is_twin = |candidate: &Candidate| is_alike(inertial.inertia(&candidate.numbers)) && !is_alike(old);
@@ -88,10 +100,6 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
         let numbers = inertial.numbers_of(nearest);
         (!is_possible).then_some(Candidate { code: "nearest_inertia", reason, numbers, cost: 0.0 })
     })?;
-    let mut numbers = found.numbers;
-    keep_equal(&inertial.numbers, &mut numbers);
-    let (editor, change) = inertial.write(&numbers);
-    let mut proposal = robot.proposal(found.code, inertial.link, &editor);
     let why = match (is_possible, solid) {
         (true, Some(solid)) => format!("; as written, {}", solid.doubt(old, inertial.R)),
         _ if found.code == "nearest_inertia" => String::new(),
@@ -101,10 +109,47 @@ pub(super) fn proposal(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>) -
     let others: Vec<&str> = others.map(|(_, reason)| reason.as_str()).collect();
     let or =
         if others.is_empty() { String::new() } else { format!(" (it may as well be that {})", others.join(", or ")) };
+    Some(made(robot, name, inertial, found, or + &why))
+}
+
+/// The proposal of a candidate; `why` follows its reason.
+fn made(robot: &Robot<'_>, name: &str, inertial: &Inertial<'_>, found: Candidate, why: String) -> Proposal {
+    let mut numbers = found.numbers;
+    keep_equal(&inertial.numbers, &mut numbers);
+    let (editor, change) = inertial.write(&numbers);
+    let mut proposal = robot.proposal(found.code, inertial.link, &editor);
     proposal.change = change;
-    proposal.reason = format!("{}{or}{why}", found.reason);
-    proposal.inertia = Some((name.to_string(), old, inertial.inertia(&numbers)));
-    Some(proposal)
+    proposal.reason = format!("{}{why}", found.reason);
+    let both = [inertial.numbers, numbers].map(|numbers| inertial.inertia(&numbers));
+    proposal.inertia = Some((name.to_string(), both[0], both[1]));
+    proposal
+}
+
+/// A repair that gives a possible inertia the numbers of twins, to which as written it is not even close. It is one
+/// about the origin, which no twin's repair can be in reverse, or has more twins than the numbers as written.
+fn of_twins(
+    inertial: &Inertial<'_>,
+    old: SpatialInertia,
+    twins: &[(String, &Inertial<'_>, SpatialInertia)],
+) -> Option<Candidate> {
+    if twins.iter().any(|(.., twin)| within(old, *twin, CLOSE)) {
+        return None;
+    }
+    let mut candidates = all(inertial, old).into_iter();
+    candidates.find_map(|candidate| {
+        let least = match candidate.code {
+            "about_origin" => 1,
+            "parallel_axis" => 2,
+            _ => return None,
+        };
+        let G = inertial.inertia(&candidate.numbers);
+        let same: Vec<&str> =
+            twins.iter().filter(|(.., twin)| within(G, *twin, EXACT)).map(|(name, ..)| name.as_str()).collect();
+        (same.len() >= least).then(|| {
+            let list = same.iter().map(|name| format!("`{}`", shown(name))).collect::<Vec<_>>().join(", ");
+            Candidate { reason: format!("{}: without that they are those of {list}", candidate.reason), ..candidate }
+        })
+    })
 }
 
 /// Everything that it may have been.
@@ -233,10 +278,14 @@ fn shifted(x: f64, power: i32) -> f64 {
 
 /// True for possible mirror images: mass, principal moments and ‖c‖ agree within 1 %.
 fn alike(a: SpatialInertia, b: SpatialInertia) -> bool {
+    within(a, b, 0.01)
+}
+
+fn within(a: SpatialInertia, b: SpatialInertia, part: f64) -> bool {
     let (p, q) = (a.verdict().principal_moments, b.verdict().principal_moments);
-    let near = |a: f64, b: f64| (a - b).abs() <= 0.01 * b.abs();
+    let near = |a: f64, b: f64| (a - b).abs() <= part * b.abs();
     let distance = (a.center_of_mass().norm() - b.center_of_mass().norm()).abs();
-    near(a.mass, b.mass) && p.iter().zip(q).all(|(a, b)| near(*a, b)) && distance <= 0.01 * b.center_of_mass().norm()
+    near(a.mass, b.mass) && p.iter().zip(q).all(|(a, b)| near(*a, b)) && distance <= part * b.center_of_mass().norm()
 }
 
 /// The moments of a compact body are of about the same size.

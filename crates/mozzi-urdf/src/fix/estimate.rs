@@ -3,7 +3,8 @@
 use super::fit::Detail;
 use super::inertial::shortest;
 use super::{Repairs, with_robot};
-use crate::edit::element::{Editor, Tag};
+use crate::edit::element::Editor;
+use crate::edit::inertial::set_inertia;
 use crate::{EditError, Settings};
 use mozzi::linalg::Sym3;
 use mozzi::{SpatialInertia, Vec3};
@@ -26,23 +27,24 @@ pub fn estimates(
         let all = links.filter_map(|link| {
             let name = link.attribute("name")?;
             let solid = robot.solid(name)?;
-            let old = robot.inertials.get(name).map(|inertial| (inertial, inertial.inertia(&inertial.numbers)));
-            let given = old.as_ref().map(|(_, G)| G.mass).filter(|mass| *mass > 0.0);
+            let old = robot.inertials.get(name).map(|inertial| inertial.inertia(&inertial.numbers));
+            let given = old.map(|G| G.mass).filter(|mass| *mass > 0.0);
             let mass = given.unwrap_or(density * solid.moments.size);
             let (center, I) = without_noise(solid.moments.center, solid.moments.I * (1.0 / solid.moments.size));
             let new = SpatialInertia::new(mass, center, I * mass);
-            let (editor, change) = match &old {
-                Some((inertial, _)) => inertial.write(&inertial.numbers_of(new)),
-                None => (inserted(link, new), format!("an <inertial> of {} kg is added", shortest(mass))),
-            };
+            let mut editor = Editor::new(link.text);
+            let changes = set_inertia(link, new, shortest, &mut editor);
+            if changes.is_empty() {
+                return None;
+            }
             let mut proposal = robot.proposal("estimated_inertia", link, &editor);
-            proposal.change = change;
+            proposal.change = changes.join(", ");
             let volume = mozzi::spatial::Rounded(solid.moments.size);
             proposal.reason = match given {
                 Some(_) => format!("the hull of its shapes has {volume} m³, filled evenly with the given mass"),
                 None => format!("the hull of its shapes has {volume} m³, filled with {density:?} kg/m³"),
             };
-            proposal.inertia = Some((name.to_string(), old.map_or(SpatialInertia::zero(), |(_, G)| G), new));
+            proposal.inertia = Some((name.to_string(), old.unwrap_or_else(SpatialInertia::zero), new));
             Some(proposal)
         });
         all.collect()
@@ -57,19 +59,4 @@ fn without_noise(center: Vec3, I: Sym3) -> (Vec3, Sym3) {
     let length = 1e-13 * I.trace().sqrt();
     let center = Vec3(center.0.map(|x| kept(x, length)));
     (center, Sym3 { xy: product(I.xy), xz: product(I.xz), yz: product(I.yz), ..I })
-}
-
-fn inserted<'a>(link: Tag<'a>, G: SpatialInertia) -> Editor<'a> {
-    let mut editor = Editor::new(link.text);
-    let Vec3(c) = G.center_of_mass();
-    let Sym3 { xx, xy, xz, yy, yz, zz } = G.about_center_of_mass();
-    let moments = super::inertial::MOMENTS.into_iter().zip([xx, xy, xz, yy, yz, zz]);
-    let moments: String = moments.map(|(name, x)| format!(" {name}=\"{}\"", shortest(x))).collect();
-    let element = format!(
-        "<inertial><origin xyz=\"{}\"/><mass value=\"{}\"/><inertia{moments}/></inertial>",
-        c.map(shortest).join(" "),
-        shortest(G.mass)
-    );
-    editor.insert_first(link, &element);
-    editor
 }

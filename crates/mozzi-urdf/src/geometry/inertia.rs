@@ -41,7 +41,7 @@ pub(crate) fn check(link: &Element, G: SpatialInertia, cx: &mut Context) {
 }
 
 fn sorted(mut moments: [f64; 3]) -> [f64; 3] {
-    moments.sort_by(f64::total_cmp);
+    moments.sort_unstable_by(f64::total_cmp);
     moments
 }
 

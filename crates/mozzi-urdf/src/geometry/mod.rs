@@ -123,6 +123,18 @@ fn parse_in(
     Ok(placed(Geometry { shapes, ..Geometry::default() }, findings, &[source], dialect))
 }
 
+/// The number of shapes of a text, readable or not: `<geom>` of bodies in MJCF, else `<visual>` and `<collision>` of
+/// links. Included files and the default classes of MJCF are not counted.
+pub fn shape_count(text: &str) -> usize {
+    let Ok(document) = roxmltree::Document::parse(text.strip_prefix('\u{feff}').unwrap_or(text)) else { return 0 };
+    let is_shape = |node: &roxmltree::Node<'_, '_>| match node.tag_name().name() {
+        "geom" => node.ancestors().any(|above| above.has_tag_name("worldbody")),
+        "visual" | "collision" => node.parent().is_some_and(|above| above.has_tag_name("link")),
+        _ => false,
+    };
+    document.descendants().filter(is_shape).count()
+}
+
 fn placed(found: Geometry, findings: Findings, sources: &[Source], dialect: Dialect) -> Geometry {
     let placed = Placed::of(findings, sources, dialect);
     Geometry { left_out: placed.diagnostics.into_iter().map(Diagnostic::into_warning).collect(), ..found }

@@ -22,7 +22,7 @@ pub fn mesh_corners(format: &str, file: &[u8]) -> Result<Vec<Vec3>, String> {
     let order = |a: &Vec3, b: &Vec3| {
         (0..3).map(|k| a.0[k].total_cmp(&b.0[k])).fold(std::cmp::Ordering::Equal, |x, y| x.then(y))
     };
-    vertices.sort_by(order);
+    vertices.sort_unstable_by(order);
     vertices.dedup();
     Ok(farthest(&vertices))
 }

@@ -2,7 +2,7 @@
 
 use super::base::{base_link, has_world, start_pose};
 use crate::urdf::write::constraint_losses;
-use crate::written::names_of;
+use crate::written::{chosen_end_effector, names_of};
 use mozzi::model::UNLIMITED;
 use mozzi::model::description::{FreeJoint, JointKind};
 use mozzi::{Base, Description};
@@ -44,7 +44,7 @@ pub(super) fn of(d: &Description) -> Vec<String> {
     if d.motors.is_some() {
         losses.push("the list of motors".to_string());
     }
-    losses.extend(d.end_effector.iter().map(|name| format!("the choice of the end effector, `{name}`")));
+    losses.extend(chosen_end_effector(d));
     if d.base == Base::Floating && d.free_joint != FreeJoint::default() {
         losses.push(format!("the name of the base's free joint, `{}`", d.free_joint.name));
     }

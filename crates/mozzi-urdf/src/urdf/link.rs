@@ -5,6 +5,7 @@ use crate::report::finding::Finding;
 use crate::report::places::Place;
 use crate::text::context::Context;
 use crate::text::element::Element;
+use crate::urdf::inertial::MOMENTS;
 use crate::urdf::origin;
 use crate::urdf::vocabulary::{INERTIA, INERTIAL, LINK, MASS, shown};
 use mozzi::linalg::Sym3;
@@ -83,7 +84,7 @@ fn read_inertia(inertia: &Element, place: &mut Place, cx: &mut Context) -> Optio
         let value = inertia.required(name, cx)?;
         inertia.vector::<1>(name, &value, cx).map(|[x]| x)
     };
-    let [xx, xy, xz, yy, yz, zz] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].map(&mut entry);
+    let [xx, xy, xz, yy, yz, zz] = MOMENTS.map(&mut entry);
     place.set("inertia", inertia.span());
     Some(Sym3 { xx: xx?, xy: xy?, xz: xz?, yy: yy?, yz: yz?, zz: zz? })
 }

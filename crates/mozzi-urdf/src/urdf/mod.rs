@@ -5,6 +5,7 @@ pub(crate) mod drake;
 pub(crate) mod expressible;
 pub(crate) mod extension;
 pub(crate) mod floating;
+pub(crate) mod inertial;
 pub(crate) mod joint;
 pub(crate) mod limit;
 pub(crate) mod link;

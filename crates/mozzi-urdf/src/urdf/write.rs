@@ -2,6 +2,7 @@
 
 use crate::text::xacro::has_expression;
 use crate::urdf::floating::frees_the_base;
+use crate::urdf::inertial::element;
 use crate::urdf::limit::UNLIMITED;
 use crate::written::of_free_joint;
 use mozzi::model::description::{Anchor, Closure, Constraint, ConstraintKind, Joint, JointKind, Limits, Link};
@@ -197,16 +198,8 @@ fn link(text: &mut String, link: &Link) -> fmt::Result {
     if G == SpatialInertia::zero() {
         return writeln!(text, "  <link name=\"{name}\"/>");
     }
-    let (c, I) = (G.center_of_mass(), G.about_center_of_mass());
-    writeln!(text, "  <link name=\"{name}\">\n    <inertial>")?;
-    origin(text, "      ", SE3::translation(c.0))?;
-    writeln!(text, "      <mass value=\"{:?}\"/>", G.mass)?;
-    let [xx, xy, xz, yy, yz, zz] = [I.xx, I.xy, I.xz, I.yy, I.yz, I.zz];
-    writeln!(
-        text,
-        "      <inertia ixx=\"{xx:?}\" ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/>"
-    )?;
-    text.write_str("    </inertial>\n  </link>\n")
+    let inertial = element(G, |x| format!("{x:?}"), "\n      ", "\n    ");
+    writeln!(text, "  <link name=\"{name}\">\n    {inertial}\n  </link>")
 }
 
 fn joint(text: &mut String, joint: &Joint) -> fmt::Result {

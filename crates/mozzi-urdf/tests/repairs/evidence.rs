@@ -188,3 +188,23 @@ fn windows_lines_stay() {
     let repaired = apply(&text, &found(&text));
     assert_eq!(repaired, arm(SOUND, LIMIT).replace('\n', "\r\n"));
 }
+
+#[test]
+fn exact_twins_refute_a_possible_inertia() {
+    let good = ["0.003", "0", "-0.00014", "0.003", "0", "0.00003"];
+    let at = |y: &str, moments| inertial(&format!("0.002 {y} -0.1"), "0.2", moments);
+    // m (‖c‖² E − c cᵀ) more
+    let about_origin = ["0.005", "0", "-0.0001", "0.0050008", "0", "0.0000308"];
+    let robot = links(&[("L_calf", &at("0", good)), ("R_calf", &at("0", about_origin))]);
+    let list = found(&robot);
+    assert_eq!(list.iter().map(|one| one.code).collect::<Vec<_>>(), ["about_origin"], "{list:#?}");
+    assert!(list[0].reason.ends_with("without that they are those of `L_calf`"), "{}", list[0].reason);
+    assert!(list[0].change.contains("ixz -0.0001 → -0.00014"), "{}", list[0].change);
+    // of two links with other products either may be wrong; three decide
+    let wrong = ["0.003", "0", "-0.00006", "0.003", "0", "0.00003"];
+    let pair = [("L1", at("0", good)), ("R1", at("0", wrong))];
+    assert_eq!(changes(&links(&pair.each_ref().map(|(name, text)| (*name, text.as_str())))), []);
+    let legs = [("L1", at("0", good)), ("R1", at("0", wrong)), ("R2", at("0", good)), ("L2", at("0", good))];
+    let text = links(&legs.each_ref().map(|(name, text)| (*name, text.as_str())));
+    assert_eq!(changes(&text), [("parallel_axis", "ixz -6e-5 → -0.00014".to_string())]);
+}

@@ -223,6 +223,32 @@ fn a_density_gives_inertias() {
 }
 
 #[test]
+fn a_given_mass_is_spread_over_the_shape_whatever_is_written() {
+    let moments = "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>";
+    for inertial in [
+        format!("<mass value=\"2\"/>{moments}"),
+        format!("<origin rpy=\"0 0 0.5\"/><mass value=\"2\"/>{moments}"),
+        format!("<origin xyz=\"1 0 0\" quat_xyzw=\"0 0 0.6 0.8\"/><mass value=\"2\"/>{moments}"),
+    ] {
+        let text = format!(
+            "<robot name=\"r\" version=\"1.1\"><link name=\"base\"/><link name=\"arm\"><inertial>{inertial}</inertial>\
+             <collision><origin xyz=\"1 0 0\"/><geometry><box size=\"0.1 0.2 0.3\"/></geometry></collision></link>\
+             <joint name=\"j\" type=\"continuous\"><parent link=\"base\"/><child link=\"arm\"/><axis xyz=\"0 0 1\"/>\
+             </joint></robot>"
+        );
+        let estimates = |text: &str| estimates("a.urdf", text, 1000.0, None, &Settings::default()).unwrap().proposals;
+        let repaired = apply(&text, &estimates(&text));
+        let found = parse("a.urdf", repaired.as_str()).unwrap().description.links[1].inertia;
+        let expected =
+            mozzi::Solid::Box([0.1, 0.2, 0.3]).inertia(2.0).transformed(mozzi::SE3::translation([1.0, 0.0, 0.0]));
+        for (a, b) in found.to_parameters().into_iter().zip(expected.to_parameters()) {
+            assert!((a - b).abs() < 1e-12, "{repaired}");
+        }
+        assert!(estimates(&repaired).is_empty(), "{repaired}");
+    }
+}
+
+#[test]
 fn other_languages_are_refused_by_name() {
     let why = |text: &str| proposals("a.xml", text, None, &Settings::default()).unwrap_err().to_string();
     assert!(why("<mujoco><worldbody/></mujoco>").contains("only URDF is repaired"));

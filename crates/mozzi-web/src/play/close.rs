@@ -2,7 +2,8 @@
 
 use super::entry::text;
 use crate::robot::Robot;
-use mozzi::{Freedom, Model};
+use mozzi::Model;
+use mozzi::model::Bounds;
 use mozzi_sim::{Contacts, Plane};
 use serde_json::{Value, json};
 
@@ -25,13 +26,10 @@ pub fn closed(robot: &mut Robot, guess: &[f64], hold: &[&str]) -> Result<Value, 
     Ok(Value::Null)
 }
 
-/// Puts each joint of one axis that is beyond a limit onto it.
+/// Puts each joint that is beyond a limit, its own or a mimic joint's, onto it.
 pub fn within(model: &Model, theta: &mut [f64]) {
-    for (joint, place) in model.joints().zip(model.places()) {
-        if let (Freedom::One, Some([low, high])) = (place.freedom, joint.limits.position) {
-            theta[place.q] = theta[place.q].max(low).min(high);
-        }
-    }
+    let bounds = Bounds::of(model);
+    (0..bounds.joints.len()).for_each(|k| _ = bounds.put_within(theta, k));
 }
 
 /// Moves the inputs within the joints' limits, before a simulation that respects them.

@@ -3,7 +3,7 @@
 use super::close::closed;
 use super::entry::{text, three};
 use crate::robot::Robot;
-use mozzi::model::integrate;
+use mozzi::model::{Bounds, integrate};
 use mozzi::nalgebra::{DMatrix, DVector, Vector3};
 use mozzi::{Error, FrameId, Freedom, Model, Place, Vec3};
 use serde_json::Value;
@@ -31,15 +31,13 @@ pub fn drag(robot: &mut Robot, command: &Value) -> Result<Value, String> {
             base + known.ok_or_else(|| format!("there is no independent joint `{name}`"))?
         }
     };
-    let place = &places[index];
+    let (place, bounds) = (&places[index], Bounds::of(model));
     for _ in 0..STEPS {
         if !nearer(model, place, (frame, point, goal), &mut theta).map_err(said)? {
             break;
         }
-        let limits =
-            index.checked_sub(base).and_then(|k| model.joints().nth(k)).and_then(|joint| joint.limits.position);
-        if let (Freedom::One, Some([low, high])) = (place.freedom, limits) {
-            theta[place.q] = theta[place.q].max(low).min(high);
+        if let Some(k) = index.checked_sub(base) {
+            bounds.put_within(&mut theta, k);
         }
     }
     match closed(robot, &theta, &[joint]) {

@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 const PIN: &str = "pin ";
 
 /// Mass, centre and inertia about it of each link, damping and friction of each joint, the pinned frames.
-pub fn numbers(model: &Model) -> Value {
-    let robot = model.description();
+pub fn numbers(model: &Model) -> Result<Value, String> {
+    let robot = model.described().map_err(|error| error.to_string())?;
     let links = robot.links.iter().map(|link| {
         let Sym3 { xx, xy, xz, yy, yz, zz } = link.inertia.about_center_of_mass();
         json!({
@@ -26,15 +26,15 @@ pub fn numbers(model: &Model) -> Value {
         })
     });
     let pins = robot.constraints.iter().filter_map(|constraint| constraint.name.strip_prefix(PIN));
-    json!({
+    Ok(json!({
         "links": links.collect::<Value>(), "joints": joints.collect::<Value>(), "pins": pins.collect::<Value>(),
         "gravity": robot.gravity,
-    })
+    }))
 }
 
 /// The description after a change, as JSON of [`mozzi_urdf::json`]. The robot itself stays as it is.
 pub fn edit(robot: &Robot, command: &Value) -> Result<Value, String> {
-    let mut changed = robot.model().description().clone();
+    let mut changed = robot.model().described().map_err(|error| error.to_string())?;
     match text(command, "what")? {
         "link" => link(&mut changed, command)?,
         "joint" => joint(&mut changed, command)?,

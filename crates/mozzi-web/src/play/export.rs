@@ -6,8 +6,9 @@ use serde_json::{Value, json};
 
 /// The robot as URDF, and a list of the parts that URDF cannot express.
 pub fn urdf(model: &Model) -> Result<Value, String> {
-    let mut robot = expressible(model.description());
-    let mut left_out = Vec::new();
+    let mut robot = expressible(&model.described().map_err(|error| error.to_string())?);
+    let mut left_out: Vec<String> =
+        robot.states.drain(..).map(|state| format!("the named state `{}`", state.name)).collect();
     for constraint in std::mem::take(&mut robot.constraints) {
         left_out.push(format!("the constraint `{}`", constraint.name));
     }

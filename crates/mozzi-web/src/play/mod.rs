@@ -51,7 +51,7 @@ impl Robot {
             "close" => close::close(self, &command),
             "within" => Ok(close::put_within(self)),
             "settle" => close::settle(self),
-            "inertias" => Ok(edit::numbers(self.model())),
+            "inertias" => edit::numbers(self.model()),
             "edit" => edit::edit(self, &command),
             "urdf" => export::urdf(self.model()),
             "json" => Ok(export::json(self.model())),

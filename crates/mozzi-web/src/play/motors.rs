@@ -84,8 +84,7 @@ fn driven_inertia(model: &Model, theta: &[f64]) -> Result<Vec<f64>, Error> {
     }
     // the base's columns of M are the inertia of the whole robot, in the base's coordinates
     let whole = M.view((0, 0), (6, 6));
-    let base = model.frames().next().map(|(id, _)| id);
-    let Some(base) = base else { return Ok(inertia) };
+    let base = model.frame(model.folded_links()[0].links[0].0)?;
     let from_space = model.forward_kinematics(theta, base)?.inverse();
     for (joint, place) in model.joints().zip(model.places()) {
         let child = model.frame(&joint.child)?;

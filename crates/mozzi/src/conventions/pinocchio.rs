@@ -3,9 +3,10 @@
 use super::JointOrder;
 use super::joint_order::check_length;
 use crate::kinematics::Jacobian;
-use crate::model::description::Joint;
+use crate::model::description::{Joint, Link};
 use crate::model::{Error, Freedom, Model, Place};
 use crate::scalar::{Real, Scalar};
+use crate::spatial::SpatialInertia;
 use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -33,7 +34,7 @@ use nalgebra::{DMatrix, DVector};
 /// # use mozzi::{Base, Description, Solid};
 /// let drone = Description::new("drone").link("body", Solid::Box([0.3, 0.3, 0.1]).inertia(1.5));
 /// let model = drone.build()?.with_base(Base::Floating)?;
-/// let pinocchio = mozzi::conventions::Pinocchio::new(&model);
+/// let pinocchio = mozzi::conventions::Pinocchio::new(&model)?;
 /// let q = pinocchio.configuration(&[1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3])?;
 /// assert_eq!(q.as_slice(), [0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0]);
 /// assert_eq!(pinocchio.velocity(&[0.4, 0.5, 0.6, 1.0, 2.0, 3.0])?.as_slice(), [1.0, 2.0, 3.0, 0.4, 0.5, 0.6]);
@@ -49,11 +50,17 @@ pub struct Pinocchio {
 impl Pinocchio {
     /// The order in which Pinocchio reads the robot's URDF. A `revolute` joint without bounds in the file is unlimited
     /// in mozzi but has one position in Pinocchio: for such robots use [`with_joints`](Self::with_joints).
-    pub fn new(model: &Model) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] for a planar joint: Pinocchio's velocities of it are along axes that turn with θ.
+    pub fn new(model: &Model) -> Result<Self, Error> {
+        if let Some(joint) = planar_joints(model).next() {
+            return Err(of_a_planar_joint(joint));
+        }
         let order = JointOrder::new(model, depth_first_by_the_alphabet(model));
         let joints: Vec<&Joint> = model.joints().collect();
         let is_circle = order.joints().iter().map(|&j| turns_without_limits(joints[j])).collect();
-        Pinocchio { order, is_circle }
+        Ok(Pinocchio { order, is_circle })
     }
 
     /// The order of a Pinocchio model: the names of its joints (`model.names`, without the universe and the free
@@ -61,8 +68,11 @@ impl Pinocchio {
     ///
     /// # Errors
     /// [`Error::WrongLength`], [`Error::NoSuchJoint`] or [`Error::BadArgument`] unless the names are the independent
-    /// joints, each once, with 1 or 2 positions, 4 for a ball, 7 for a free joint.
+    /// joints, each once, with 1 or 2 positions, 4 for a ball, 7 for a free joint; as by [`new`](Self::new).
     pub fn with_joints(model: &Model, names: &[&str], nqs: &[usize]) -> Result<Self, Error> {
+        if let Some(joint) = planar_joints(model).find(|joint| names.contains(joint)) {
+            return Err(of_a_planar_joint(joint));
+        }
         let order = JointOrder::by_name(model, names)?;
         check_length("the list of joints' numbers of positions", nqs.len(), names.len())?;
         for ((k, &nq), &joint) in nqs.iter().enumerate().zip(order.joints()) {
@@ -225,6 +235,30 @@ fn turns_without_limits(joint: &Joint) -> bool {
     joint.limits.position.is_none() && joint.kind.name() == "revolute"
 }
 
+/// The names of planar joints of a URDF, series of `j.x`, `j.y` and `j.theta` with links without mass, of which
+/// something moves.
+fn planar_joints(model: &Model) -> impl Iterator<Item = &str> {
+    let robot = model.description();
+    let is_part = |name: &str| {
+        let is_empty = |link: &Link| link.name == name && link.inertia == SpatialInertia::zero();
+        robot.joints.iter().any(|joint| joint.name == name && joint.child == name) && robot.links.iter().any(is_empty)
+    };
+    robot.joints.iter().filter_map(move |joint| {
+        let name = joint.name.strip_suffix(".theta")?;
+        let [x, y] = ["x", "y"].map(|way| alloc::format!("{name}.{way}"));
+        let moves = [&x, &y, &joint.name].iter().any(|part| model.joint_names().any(|known| known == part.as_str()));
+        (moves && joint.parent == y && is_part(&x) && is_part(&y)).then_some(name)
+    })
+}
+
+fn of_a_planar_joint(name: &str) -> Error {
+    Error::BadArgument {
+        what: "a joint for Pinocchio",
+        found: alloc::format!("the planar joint `{name}`, whose velocities are along axes that turn there, not here"),
+        expected: "joints of which both have the same velocities",
+    }
+}
+
 /// The numbers of the independent joints: depth first, siblings (also fixed ones) by their names' bytes.
 fn depth_first_by_the_alphabet(model: &Model) -> Vec<usize> {
     let robot = model.description();
@@ -234,7 +268,7 @@ fn depth_first_by_the_alphabet(model: &Model) -> Vec<usize> {
         carried.entry(&joint.parent).or_default().push(joint);
     }
     // last first: the stack reverses them
-    carried.values_mut().for_each(|siblings| siblings.sort_by(|a, b| b.name.cmp(&a.name)));
+    carried.values_mut().for_each(|siblings| siblings.sort_unstable_by(|a, b| b.name.cmp(&a.name)));
     let on = |link: &str| carried.get(link).cloned().unwrap_or_default();
     let (mut stack, mut numbers) = (on(&robot.links[model.structure.base].name), Vec::new());
     while let Some(joint) = stack.pop() {
@@ -271,7 +305,7 @@ mod tests {
     fn siblings_stand_by_the_alphabet_and_circles_have_two_positions() {
         let model = siblings(Base::Floating);
         assert!(model.joint_names().eq(["b", "b2", "b1", "a"]));
-        let pinocchio = Pinocchio::new(&model);
+        let pinocchio = Pinocchio::new(&model).expect("no planar joint");
         assert_eq!((pinocchio.joints(), pinocchio.nq()), (&[3, 0, 2, 1][..], 12)); // a, b, b1, weld's b2
         let theta = [0.5, 0.1, -0.7, 0.5, 1.0, 2.0, 3.0, 10.0, 20.0, 30.0, 2.0];
         let q = pinocchio.configuration(&theta).expect("nq");
@@ -292,7 +326,7 @@ mod tests {
     #[test]
     fn power_energy_and_the_equation_of_motion_are_the_same() {
         for model in [siblings(Base::Fixed), siblings(Base::Floating), tree(4, 7, 2), floating_tree(4, 7, 2)] {
-            let (pinocchio, n) = (Pinocchio::new(&model), model.n());
+            let (pinocchio, n) = (Pinocchio::new(&model).expect("no planar joint"), model.n());
             let [theta, dtheta, ddtheta] = state(&model, 5);
             let tau = Random(6).vector(n, 3.0);
             let (v, a) = (pinocchio.velocity(&dtheta).expect("n"), pinocchio.acceleration(&ddtheta).expect("n"));
@@ -322,7 +356,7 @@ mod tests {
     #[test]
     fn a_jacobian_gives_the_same_twist() {
         let model = floating_tree(3, 6, 1);
-        let pinocchio = Pinocchio::new(&model);
+        let pinocchio = Pinocchio::new(&model).expect("no planar joint");
         let [theta, dtheta, _] = state(&model, 7);
         let J = model.body_jacobian(&theta, model.end_effector().expect("its tip")).expect("J");
         let V = &J * dtheta.as_slice();
@@ -333,7 +367,7 @@ mod tests {
 
     #[test]
     fn wrong_lengths_are_errors_that_say_so() {
-        let pinocchio = Pinocchio::new(&siblings(Base::Floating));
+        let pinocchio = Pinocchio::new(&siblings(Base::Floating)).expect("no planar joint");
         let said = |answer: Result<DVector<f64>, Error>| format!("{}", answer.expect_err("too short"));
         assert_eq!(said(pinocchio.configuration(&[0.0; 10])), "theta has 10 entries, expected 11");
         assert_eq!(said(pinocchio.from_configuration(&[0.0; 11])), "q has 11 entries, expected 12");

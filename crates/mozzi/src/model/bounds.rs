@@ -51,12 +51,38 @@ impl Bounds {
         Bounds { places: model.places().to_vec(), joints, turns }
     }
 
+    /// The largest speed and acceleration of each independent joint, ∞ if there is no limit: rad/s and rad/s², or m/s
+    /// and m/s². A mimic joint's limits also restrict its source joint, but not those of 0, which files have where
+    /// they mean none.
+    pub fn of_rates(model: &Model) -> [Vec<f64>; 2] {
+        let mut rates = [(); 2].map(|()| vec![f64::INFINITY; model.joint_names().len()]);
+        for (joint, source) in model.moving_joints().zip(model.sources()) {
+            for (most, limit) in rates.iter_mut().zip([joint.limits.velocity, joint.limits.acceleration]) {
+                if let Some(limit) = limit.filter(|limit| joint.mimic.is_none() || *limit > 0.0) {
+                    most[source.joint] = most[source.joint].min(limit / source.ratio.abs());
+                }
+            }
+        }
+        rates
+    }
+
     /// The value of joint k that its limits bound: its position; for a ball, its angle from 0.
     ///
     /// # Panics
     /// On a θ of a wrong length, or if there is no joint k.
     pub fn value(&self, theta: &[f64], k: usize) -> f64 {
         self.places[k].bounded_value(theta)
+    }
+
+    /// Moves joint k to the limit that it is beyond, if there is one, and returns it.
+    ///
+    /// # Panics
+    /// On a θ of a wrong length, or if there is no joint k.
+    pub fn put_within(&self, theta: &mut [f64], k: usize) -> Option<f64> {
+        let ([low, high], value) = (self.joints[k], self.value(theta, k));
+        let limit = (!(low..=high).contains(&value)).then(|| value.clamp(low, high))?;
+        self.places[k].put_at_limit(theta, limit);
+        Some(limit)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The indices of a joint's numbers in θ and in θ̇.
 
-use super::{Model, Motion};
+use super::{Error, Model, Motion};
 use crate::lie::SE3;
 use crate::scalar::Scalar;
 use alloc::collections::BTreeMap;
@@ -86,6 +86,23 @@ impl<C: Scalar> Model<C> {
     /// `joint.qw` … `joint.z`; for a floating base, which comes first, `base.qw` … `base.z`.
     pub fn position_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.structure.names[0].iter().map(String::as_str)
+    }
+
+    /// Whether another model has the same positions by name, in the same order, as the numbers of one need to mean the
+    /// other's; `what` names the other one in the error.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] with the first that differs.
+    pub fn check_same_joints(&self, what: &'static str, other: &Model<C>) -> Result<(), Error> {
+        let (mine, theirs) = (self.position_names(), other.position_names());
+        let found = if mine.len() != theirs.len() {
+            format!("one with {} positions, and the robot has {}", theirs.len(), mine.len())
+        } else if let Some((mine, theirs)) = mine.zip(theirs).find(|(mine, theirs)| mine != theirs) {
+            format!("one with `{theirs}` where the robot has `{mine}`")
+        } else {
+            return Ok(());
+        };
+        Err(Error::BadArgument { what, found, expected: "the same joints in the same order" })
     }
 
     /// The names of the n velocities and forces: a joint's own name; for a ball `joint.wx`, `joint.wy`, `joint.wz`; for

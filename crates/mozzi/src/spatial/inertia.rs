@@ -266,7 +266,7 @@ fn eigenvalues(s: Sym3) -> [f64; 3] {
         }
     }
     let mut values = [m[0][0], m[1][1], m[2][2]];
-    values.sort_by(f64::total_cmp);
+    values.sort_unstable_by(f64::total_cmp);
     values
 }
 

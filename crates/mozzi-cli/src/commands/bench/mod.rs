@@ -7,6 +7,7 @@ mod timing;
 use super::assemble::needs_constraints;
 use crate::failure::{self, Failure, Result};
 use crate::interrupt;
+use crate::missing;
 use crate::progress::Progress;
 use crate::quantity::{hyphenated, quantity};
 use crate::robot::{RobotArguments, end_effector};
@@ -67,13 +68,15 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     }
     workload::matrices(&model)?;
     let is_empty = |quantity: &Declaration| quantity.is_constrained && model.constraint_rows() == 0;
-    // the random states have no other numbers
-    let has_inputs =
-        |query: &Query| query.input_lengths(&model).all(|length| [model.nq(), model.n()].contains(&length));
     let is_often_used = |index: usize| arguments.all || OFTEN_USED.contains(&LIST[index].name);
     let is_usual = |&index: &usize| is_often_used(index) && LIST[index].of != Of::Task && !is_empty(&LIST[index]);
-    let usual = (0..LIST.len()).filter(is_usual).map(Query::at).filter(has_inputs);
-    let asked: Vec<Query> = if arguments.quantity.is_empty() { usual.collect() } else { arguments.quantity.clone() };
+    let usual = (0..LIST.len()).filter(is_usual).map(Query::at);
+    let mut asked: Vec<Query> = if arguments.quantity.is_empty() { usual.collect() } else { Vec::new() };
+    for query in &arguments.quantity {
+        if !asked.contains(query) {
+            asked.push(*query);
+        }
+    }
     if asked.iter().any(|query| is_empty(query.declaration())) {
         needs_constraints(&model)?;
     }
@@ -86,9 +89,11 @@ pub fn run(arguments: &BenchArguments) -> Result<String> {
     let queries: Vec<Query> = asked
         .map(|query| tip.filter(|_| query.declaration().needs_frame()).map_or(query, |tip| query.of(tip)))
         .collect();
+    let queries = if arguments.quantity.is_empty() { missing::those_of(queries, &model) } else { queries };
     let threads = arguments.threads.unwrap_or_else(|| Batch::<f64>::of(&model).threads());
     let states = states(arguments.states, &model, &queries)?;
-    let data = Data::new(&model, states as usize);
+    let widest = queries.iter().flat_map(|query| query.input_lengths(&model)).max().unwrap_or(0);
+    let data = Data::new(&model, states as usize, widest);
     let single = data.to_f32();
 
     interrupt::listen();
@@ -163,7 +168,7 @@ fn measure(name: String, runs: &mut [Run], rounds: usize) -> Result<Option<Vec<T
     }
     let all = runs.iter().zip(times).zip(differences);
     let timings = all.map(|((run, mut times), difference)| {
-        times.sort_by(f64::total_cmp);
+        times.sort_unstable_by(f64::total_cmp);
         let engine = run.engine();
         Timing { name: name.clone(), engine, way: run.way, least: times[0], median: times[times.len() / 2], difference }
     });

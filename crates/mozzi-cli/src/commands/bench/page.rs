@@ -2,7 +2,7 @@
 
 use super::timing::{Report, Timing, Way};
 use crate::json;
-use crate::text::{Page, about, table};
+use crate::text::{Page, about, digits, table};
 use mozzi::Model;
 use serde_json::{Value, json};
 
@@ -35,8 +35,8 @@ pub fn page(model: &Model, report: &Report, is_long: bool) -> String {
     page.line(format!("{}: {} positions, {} velocities", model.description().name, model.nq(), model.n()));
     page.line(format!("{processor}; at most {threads} threads"));
     page.line(format!("{states} states per batch; median of {rounds} alternating rounds"));
-    let time = |timing: &Timing| digits(timing.median);
-    let rate = |timing: &Timing| digits(1e3 / timing.median);
+    let time = |timing: &Timing| digits(timing.median, 3);
+    let rate = |timing: &Timing| digits(1e3 / timing.median, 3);
     let one_thread = |way: Way| way.threads == 1;
     page.title("nanoseconds per state, on one thread").lines(&grid(timings, one_thread, time));
     if *threads > 1 {
@@ -74,10 +74,4 @@ fn grid(timings: &[Timing], which: impl Fn(Way) -> bool, cell: impl Fn(&Timing) 
         }
     }
     table(&[vec![head], rows].concat(), "lr")
-}
-
-/// Three digits.
-fn digits(x: f64) -> String {
-    let places = (2 - x.abs().max(1e-9).log10().floor() as i32).clamp(0, 4) as usize;
-    format!("{x:.places$}")
 }

@@ -5,7 +5,7 @@ use crate::failure::Result;
 use crate::tables::array::Array;
 use crate::tables::precision::Precision;
 use crate::tables::results::arrays;
-use mozzi::quantities::{Declaration, MOST_INPUTS, MOST_OUTPUTS, Query};
+use mozzi::quantities::{MOST_INPUTS, MOST_OUTPUTS, Query};
 use mozzi::random::Random;
 use mozzi::{Environment, FrameId, Model, Wrench, fast};
 use mozzi_engine::{Batch, BatchEnvironment};
@@ -21,7 +21,8 @@ pub struct Data<T> {
 }
 
 impl Data<f64> {
-    pub fn new(model: &Model, states: usize) -> Self {
+    /// θ, θ̇ and what else the quantities take of each state, at most `widest` numbers.
+    pub fn new(model: &Model, states: usize, widest: usize) -> Self {
         let mut random = Random(1);
         let mut numbers = |count: usize| random.vector(count, 1.0);
         let theta = (0..states).flat_map(|_| {
@@ -30,7 +31,7 @@ impl Data<f64> {
             theta
         });
         let theta = theta.collect();
-        let tables = [theta, numbers(states * model.n()), numbers(states * model.n())];
+        let tables = [theta, numbers(states * model.n()), numbers(states * widest)];
         Data { tables, wrenches: numbers(states * 6) }
     }
 
@@ -46,9 +47,10 @@ impl<T> Data<T> {
     }
 
     /// A quantity's inputs.
-    fn inputs(&self, declaration: &Declaration) -> Vec<&[T]> {
+    fn inputs(&self, query: &Query, model: &Model) -> Vec<&[T]> {
         let place = |name: &str| ["theta", "dtheta"].iter().position(|known| *known == name).unwrap_or(2);
-        declaration.inputs.iter().map(|input| &self.tables[place(input.name)][..]).collect()
+        let inputs = query.declaration().inputs.iter().zip(query.input_lengths(model));
+        inputs.map(|(input, length)| &self.tables[place(input.name)][..self.states() * length]).collect()
     }
 }
 
@@ -106,7 +108,7 @@ impl<'a> Subject<'a> {
         let mut workspace = fast::Workspace::new(model);
         let mut results: Vec<Array> = arrays(query, model, count);
         let compute: Compute = Box::new(move |is_asked| {
-            let tables = data.inputs(query.declaration());
+            let tables = data.inputs(&query, model);
             let mut rows: Vec<_> = results
                 .iter_mut()
                 .map(|array| (array.width(), array))
@@ -147,7 +149,7 @@ impl<'a> Subject<'a> {
             let wrenches: Vec<(FrameId, &[T])> = tip.map(|tip| (tip, &data.wrenches[..])).into_iter().collect();
             let environment = BatchEnvironment::from(model.environment()).with_wrenches(&wrenches);
             let mut outputs: Vec<&mut [T]> = results.iter_mut().map(|array| black_box(&mut array.values[..])).collect();
-            batch.compute(query, &data.inputs(query.declaration()), &environment, &mut outputs)?;
+            batch.compute(query, &data.inputs(&query, model), &environment, &mut outputs)?;
             Ok(if is_asked { to_f64(&results) } else { Vec::new() })
         });
         Ok(Run { way: Way { is_one: false, precision: T::NAME, threads }, states: data.states(), compute, engine })

@@ -66,9 +66,7 @@ impl Job<'_> {
     fn run_in<T: Precision>(&self) -> Result<String> {
         let &Job { file, query, model, environment, table: arguments, robot } = self;
         let output = arguments.output.as_deref();
-        if robot.json && output == Some("-") {
-            return Err(Failure::wrong("--json and --out - both write to standard output, expected one of them"));
-        }
+        json::unless_rows(robot.json, output)?;
         Format::of_results(output.unwrap_or("-"), query)?;
         query.check_subject(model)?; // before all states are read
         let mut batch = Batch::<T>::of(model);
@@ -138,13 +136,8 @@ impl Job<'_> {
             _ => {
                 let arrays: Vec<String> =
                     results.iter().map(|array| format!("{} {}", array.name, tuple(&array.shape))).collect();
-                let of_threads = if kernel.is_some() {
-                    "transfers included".to_string()
-                } else if threads == 1 {
-                    "1 thread".to_string()
-                } else {
-                    format!("{threads} threads")
-                };
+                let of_threads =
+                    if kernel.is_some() { "transfers included".to_string() } else { counted(threads, "thread") };
                 let place = output.filter(|file| *file != "-").unwrap_or("standard output");
                 failure::write(&format!(
                     "{} in {seconds:.3} s, {rate:.3e} states/s ({}, {engine}, {of_threads}): {} in {place}\n",

@@ -1,14 +1,14 @@
 //! The text of a URDF: the edited text of IN, if IN is a URDF, or a newly written one.
 
+use super::losses::{names, of_these, report};
 use crate::failure::{self, Failure, Result};
 use crate::input;
 use crate::robot_json;
 use clap::ValueEnum;
 use mozzi::Description;
-use mozzi::model::description::Joint;
 use mozzi_urdf::{
-    Settings, drives_of_fixed_joints, edit, edit_with_old_values, embedded, expanded, expressible, mjcf,
-    only_ball_constraints, sdf,
+    Settings, chosen_end_effector, drives_of_fixed_joints, edit, edit_with_old_values, embedded, expanded, expressible,
+    geometry::shape_count, mjcf, named_states, only_ball_constraints, sdf,
 };
 use std::path::Path;
 
@@ -31,27 +31,28 @@ pub fn text(
 ) -> Result<String> {
     let not_written =
         |why: &dyn std::fmt::Display, help: &str| Failure::wrong(format!("{output} is not written: {why}; {help}"));
+    let is_strict = settings.policy == mozzi_urdf::Policy::Strict;
     match source(input, settings.clone())? {
         Some(text) if left_out.is_empty() => {
             relative_meshes(input, output, &text);
             let text = edit(input.strip_suffix(".xacro").unwrap_or(input), &text, robot)
                 .map_err(|why| not_written(&why, "convert to .json first, and that to .urdf"))?;
-            for drive in drives_of_fixed_joints(&text, robot) {
+            let drives = drives_of_fixed_joints(&text, robot);
+            if let Some(drive) = drives.first().filter(|_| is_strict) {
+                return Err(not_written(&format!("--strict, and {drive}"), "remove the drive"));
+            }
+            for drive in drives {
                 failure::write(&format!("{output}: warning: {drive}; controllers may refuse it: remove the drive\n"));
             }
             Ok(text)
         }
         _ => {
-            let is_strict = settings.policy == mozzi_urdf::Policy::Strict;
             // a note names each thing that URDF cannot express; --strict refuses it, unless the user leaves it out
             let all = [LeftOut::Gravity, LeftOut::Rotors, LeftOut::Constraints];
             let told = all.into_iter().filter(|what| !is_strict && !left_out.contains(what));
             let left_out: Vec<LeftOut> = left_out.iter().copied().chain(told).collect();
-            if is_strict && !robot.states.is_empty() {
-                let names: Vec<&str> = robot.states.iter().map(|state| state.name.as_str()).collect();
-                let why = format!("--strict, and URDF cannot express the named states {}", names.join(", "));
-                return Err(not_written(&why, JSON));
-            }
+            let lost = chosen_end_effector(robot).into_iter().chain(named_states(robot));
+            report(output, &lost.collect::<Vec<_>>(), &settings)?;
             let robot = reduced(output, robot, &left_out);
             let text = mozzi_urdf::write(&robot).map_err(|why| not_written(&why, &help(&robot)))?;
             ignored_elsewhere(output, &robot);
@@ -93,12 +94,11 @@ fn help(robot: &Description) -> String {
 /// A note about the shapes of IN, which are not written.
 pub fn shapes(input: &str, output: &str, settings: &Settings) -> Result<()> {
     let Some(text) = any_source(input, settings.clone())? else { return Ok(()) };
-    let count: usize = ["<visual", "<collision", "<geom "].iter().map(|tag| text.matches(tag).count()).sum();
-    let count = match count {
-        0 => return Ok(()),
-        1 => "shape".to_string(),
-        count => format!("{count} shapes"),
-    };
+    let count = shape_count(&text);
+    if count == 0 {
+        return Ok(());
+    }
+    let count = of_these(count, "shape");
     failure::note(&format!("{output} omits the {count} of {}, for pictures and contacts", input::name(input)));
     Ok(())
 }
@@ -142,9 +142,7 @@ fn relative_meshes(input: &str, output: &str, text: &str) {
 fn reduced(output: &str, robot: &Description, left_out: &[LeftOut]) -> Description {
     let mut robot = expressible(robot);
     let omitted = |what: String| failure::note(&format!("{output} omits {what}"));
-    if let Some(name) = robot.end_effector.take() {
-        omitted(format!("the choice of the end effector, `{name}`; --end-effector {name} sets it"));
-    }
+    robot.end_effector = None;
     for what in left_out {
         match what {
             LeftOut::Armature => {
@@ -200,17 +198,5 @@ fn ignored_elsewhere(output: &str, robot: &Description) {
                  their {quantity} differs from mozzi's\n"
             ));
         }
-    }
-}
-
-/// The names of some joints, the first of them if there are many.
-fn names(robot: &Description, is_one: impl Fn(&Joint) -> bool) -> Option<String> {
-    const SHOWN: usize = 4;
-    let all: Vec<String> = robot.joints.iter().filter(|j| is_one(j)).map(|j| format!("`{}`", j.name)).collect();
-    let shown = all.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
-    match all.len() {
-        0 => None,
-        count if count > SHOWN => Some(format!("{count} joints ({shown}, …)")),
-        _ => Some(shown),
     }
 }

@@ -3,7 +3,7 @@
 use crate::failure::{self, Failure, Result};
 use crate::recogniser::{Force, IS_CURRENT, Request, TARGET};
 use crate::tables::join::join;
-use crate::tables::samples::{LockedRange, Row, Samples};
+use crate::tables::samples::{Followed, Following, LockedRange, Row, Samples};
 use crate::tables::{How, read};
 use mozzi::{FrameId, Model};
 use mozzi_identify::{Log, order};
@@ -20,6 +20,9 @@ pub struct Given<'g> {
 
 /// A locked joint may move by this, rad or m, or at this speed.
 const STILL: f64 = 1e-3;
+/// A mimic joint may be this far, rad or m, and this part of its motion, from where its source joint puts it.
+const PLAY: f64 = 0.01;
+const FOLLOWS: f64 = 0.2;
 
 /// The table of a log, as its columns are recognised: of any format, MCAP and rosbag2 with `JointState` messages.
 pub fn read_table(file: &str, model: &Model, given: &Given) -> Result<Samples> {
@@ -31,6 +34,7 @@ pub fn read_table(file: &str, model: &Model, given: &Given) -> Result<Samples> {
 /// Reads a log, and the meaning of its columns.
 pub fn read_log(file: &str, model: &Model, given: &Given) -> Result<(Log, Vec<Row>)> {
     let mut samples = read_table(file, model, given)?;
+    check_followers(&samples)?;
     join(&mut samples, model, "; --columns shows how each is read")?;
     check_locked(&samples)?;
     let Samples { file: name, columns, is_time_certain, .. } = &samples;
@@ -85,6 +89,26 @@ fn check_locked(samples: &Samples) -> Result<()> {
             samples.file
         ))),
     }
+}
+
+/// A mimic joint must follow its source joint, except for play, and have a force where that has one.
+fn check_followers(samples: &Samples) -> Result<()> {
+    for Following { joint, source, law, column, found } in &samples.followers {
+        let why = match found {
+            Followed::Differs([error, motion]) if !(*error <= PLAY + FOLLOWS * motion) => format!(
+                "the position of `{joint}` (`{column}`) differs by {error:.4} (median) from {law}, \
+                 which it follows in the robot's file: the file or the columns are wrong"
+            ),
+            Followed::Lacks(rows) if *rows > 0 => format!(
+                "the force of `{joint}` (`{column}`), which is added to that of `{source}`, is missing in {rows} of {} \
+                 rows: fill the column, or delete it",
+                samples.count
+            ),
+            _ => continue,
+        };
+        return Err(Failure::wrong(format!("{}: {why}", samples.file)));
+    }
+    Ok(())
 }
 
 /// The frame of a table `wrench` or `wrench_FRAME`.

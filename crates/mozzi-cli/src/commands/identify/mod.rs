@@ -315,11 +315,6 @@ impl IdentifyArguments {
         let mut limits = Limits::default();
         if let Some(text) = &self.total_mass {
             let [mass, deviation] = array("--total-mass", text, ["the mass", "its deviation"])?;
-            if !(mass > 0.0 && deviation > 0.0) {
-                return Err(Failure::wrong(format!(
-                    "--total-mass is {mass} kg with a deviation of {deviation} kg, expected two positive numbers"
-                )));
-            }
             limits.total_mass = Some([mass, deviation]);
         }
         for text in &self.between {

@@ -4,6 +4,7 @@ use crate::text::{Page, table};
 use clap::ValueEnum;
 use mozzi::Description;
 use mozzi::model::description::{Joint, JointKind};
+use mozzi::spatial::Rounded;
 use mozzi_identify::{Identification, Servo};
 use mozzi_report::escaped;
 
@@ -67,14 +68,9 @@ pub fn page(to: Simulator, found: &Identification<'_>, robot: &Description, serv
 /// A physics step, s, that is short enough for all.
 const STEP: f64 = 0.001;
 
-/// Six digits.
-fn digits(x: f64) -> String {
-    format!("{x:.5e}").parse::<f64>().unwrap_or(x).to_string()
-}
-
 /// Attributes that are not 0.
 fn attributes(list: &[(&str, f64)]) -> String {
-    list.iter().filter(|(_, x)| *x != 0.0).map(|(name, x)| format!(" {name}=\"{}\"", digits(*x))).collect()
+    list.iter().filter(|(_, x)| *x != 0.0).map(|(name, x)| format!(" {name}=\"{}\"", Rounded(*x))).collect()
 }
 
 fn mjcf(motors: &[Motor]) -> Vec<String> {
@@ -95,7 +91,7 @@ fn mjcf(motors: &[Motor]) -> Vec<String> {
             let Some(servo) = motor.servo else { continue };
             let name = escaped(&motor.joint.name);
             let gains = attributes(&[("kp", servo.stiffness[0]), ("kv", servo.damping[0])]);
-            let range = motor.effort().map_or(String::new(), |f| format!(" forcerange=\"-{0} {0}\"", digits(f)));
+            let range = motor.effort().map_or(String::new(), |f| format!(" forcerange=\"-{0} {0}\"", Rounded(f)));
             let late = [("delay", servo.delay), ("nsample", (servo.delay / STEP).ceil() + 2.0)];
             let late = if servo.delay > 1e-5 { attributes(&late) } else { String::new() };
             all.push(format!("  <position name=\"{name}\" joint=\"{name}\"{gains}{range}{late}/>"));
@@ -137,17 +133,17 @@ fn expression(name: &str) -> String {
 fn mjlab(motors: &[Motor]) -> Vec<String> {
     let kind = |motor: &Motor| if motor.servo.is_some() { "Position" } else { "Motor" };
     let mut kinds: Vec<String> = motors.iter().map(|motor| format!("Builtin{}ActuatorCfg", kind(motor))).collect();
-    kinds.sort();
+    kinds.sort_unstable();
     kinds.dedup();
     let mut all = vec![format!("from mjlab.actuator import {}", kinds.join(", "))];
     if let Some(delay) = delay(motors) {
-        all.push(format!("lag = round({} / 0.005)  # the delay over the physics step, s", digits(delay)));
+        all.push(format!("lag = round({} / 0.005)  # the delay over the physics step, s", Rounded(delay)));
     }
     all.push("actuators = (".into());
     for motor in motors {
         let joint = motor.joint;
         let mut values = vec![format!("target_names_expr=({},)", expression(&joint.name))];
-        let mut add = |name: &str, x: f64| values.push(format!("{name}={}", digits(x)));
+        let mut add = |name: &str, x: f64| values.push(format!("{name}={}", Rounded(x)));
         if let Some(servo) = motor.servo {
             add("stiffness", servo.stiffness[0]);
             add("damping", servo.damping[0]);
@@ -169,12 +165,12 @@ fn isaac(motors: &[Motor]) -> Vec<String> {
     let class = if has_gains { "DelayedPDActuatorCfg" } else { "ImplicitActuatorCfg" };
     let mut all = vec![format!("from isaaclab.actuators import {class}")];
     if let Some(delay) = delay(motors) {
-        all.push(format!("lag = round({} / 0.005)  # the delay over the physics step, s", digits(delay)));
+        all.push(format!("lag = round({} / 0.005)  # the delay over the physics step, s", Rounded(delay)));
     }
     let dictionary = |name: &str, of: &dyn Fn(&Motor) -> Option<f64>| {
         let entries: Vec<String> = motors
             .iter()
-            .filter_map(|motor| Some(format!("{}: {}", expression(&motor.joint.name), digits(of(motor)?))))
+            .filter_map(|motor| Some(format!("{}: {}", expression(&motor.joint.name), Rounded(of(motor)?))))
             .collect();
         (!entries.is_empty()).then(|| format!("    {name}={{{}}},", entries.join(", ")))
     };

@@ -14,6 +14,7 @@ use mozzi::model::State;
 use mozzi::model::description::{Anchor, Constraint, ConstraintKind, Gear, Joint, Rotor};
 use mozzi::{ConstraintRank, Description, Error, FrameId, Model, SE3, SpatialInertia};
 use mozzi::{Freedom, Place};
+use mozzi_urdf::counted;
 use std::collections::BTreeSet;
 
 #[derive(Args, Debug)]
@@ -55,16 +56,15 @@ pub fn kind(joint: &Joint) -> &'static str {
 
 pub fn headline(model: &Model) -> String {
     let robot = model.description();
-    let plural = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
     let joints = model.joint_names().len();
     let mimics = model.moving_links() - joints;
-    let coupled = if mimics == 0 { String::new() } else { format!(" and {}", plural(mimics, "mimic joint")) };
+    let coupled = if mimics == 0 { String::new() } else { format!(" and {}", counted(mimics, "mimic joint")) };
     format!(
         "{}: {}{}{coupled}, {}, {} kg",
         robot.name,
         if model.is_floating() { "a floating base, " } else { "" },
-        plural(joints, "independent joint"),
-        plural(robot.links.len(), "link"),
+        counted(joints, "independent joint"),
+        counted(robot.links.len(), "link"),
         scalar(total_mass(robot)),
     )
 }
@@ -133,7 +133,8 @@ fn page(model: &Model, poses: &[SE3], most: usize) -> String {
     sections.add("constraints", "constraints", constraints(model));
     sections.add("states", "states", states(model));
     sections.add("masses", "links: mass [kg], centre of mass in the link's frame [m]", masses(robot));
-    let frames_title = "frames at θ = 0: origin in the base frame [m], rotation vector ω̂θ [rad]";
+    let unit = angles::unit("rad");
+    let frames_title = format!("frames at θ = 0: origin in the base frame [m], rotation vector ω̂θ [{unit}]");
     sections.add("frames", frames_title, frames(model, poses));
     let inertias_title = "links: inertia about the centre of mass, in the link's axes [kg m²]";
     sections.add("inertias", inertias_title, inertias(robot));
@@ -179,7 +180,7 @@ fn several(model: &Model) -> Vec<String> {
 
 /// An angle of a turning joint, in degrees with `--deg`.
 fn shown(joint: &Joint, x: f64) -> f64 {
-    if angles::are_degrees() && angles::turns(joint.kind) { x.to_degrees() } else { x }
+    angles::of_joint(joint.kind, x)
 }
 
 /// The lowest (0) or highest (1) position.
@@ -200,12 +201,16 @@ fn joints(model: &Model) -> Vec<String> {
     };
     let of = |pick: fn(&Joint) -> Option<f64>| {
         let values: Vec<Option<f64>> = list.iter().map(|joint| pick(joint)).collect();
-        let decimals = Decimals::of(values.iter().flatten());
+        let decimals = Decimals::kept(values.iter().flatten());
         values.into_iter().map(|x| x.map_or("–".to_string(), |x| decimals.show(x))).collect::<Vec<_>>()
     };
     let text = |pick: &dyn Fn(&Joint) -> String| list.iter().map(|joint| pick(joint)).collect::<Vec<_>>();
     let follows = |joint: &Joint| match &joint.mimic {
-        Some(mimic) => format!("{} · {} + {}", scalar(mimic.ratio), mimic.joint, scalar(mimic.offset)),
+        Some(mimic) => {
+            let source = list.iter().find(|source| source.name == mimic.joint);
+            let ratio = mimic.ratio * shown(joint, 1.0) / source.map_or(1.0, |source| shown(source, 1.0));
+            format!("{} · {} + {}", scalar(ratio), mimic.joint, scalar(shown(joint, mimic.offset)))
+        }
         None => String::new(),
     };
     let mut columns = vec![
@@ -221,7 +226,7 @@ fn joints(model: &Model) -> Vec<String> {
         ("friction", of(|joint| (joint.friction != 0.0).then_some(joint.friction))),
         ("rotor", of(|joint| (joint.armature != 0.0).then_some(joint.armature))),
         ("stiffness", of(|joint| (joint.stiffness != 0.0).then_some(joint.stiffness))),
-        ("rests at", of(|joint| (joint.stiffness != 0.0).then_some(joint.spring_reference))),
+        ("rests at", of(|joint| (joint.stiffness != 0.0).then_some(shown(joint, joint.spring_reference)))),
         ("follows", text(&follows)),
     ];
     if list.len() > 1 && list.iter().all(|joint| kind(joint) == kind(list[0])) {
@@ -290,13 +295,14 @@ const SHOWN: usize = 2;
 
 /// The states that the robot's file names, and which of them is the start.
 fn states(model: &Model) -> Vec<String> {
-    let start = model.description().start.as_deref();
+    let (start, are_angles) = (model.description().start.as_deref(), angles::of_positions(model));
     let row = |name: &str| {
         let State { time, theta, dtheta } = model.state(name).ok()?;
         let more = if theta.len() > SHOWN { format!(" … {} in all", theta.len()) } else { String::new() };
         let is_start = if start == Some(name) { "the start" } else { "" };
         let moves = if dtheta.iter().any(|&x| x != 0.0) { "moving" } else { "at rest" };
-        let theta = format!("{}{more}", short(&theta[..theta.len().min(SHOWN)]));
+        let theta = angles::shown(&theta[..theta.len().min(SHOWN)], &are_angles);
+        let theta = format!("{}{more}", short(&theta));
         Some(
             [name, is_start, &format!("t = {} s", scalar(time)), moves, &format!("θ = {theta}")]
                 .map(str::to_string)
@@ -356,7 +362,7 @@ fn of_links(robot: &Description, picks: &[(&str, Pick)]) -> Vec<String> {
 fn frames(model: &Model, poses: &[SE3]) -> Vec<String> {
     let names: Vec<String> = model.frames().map(|(_, name)| name.to_string()).collect();
     let origins: Vec<[f64; 3]> = poses.iter().map(|T| T.p.0).collect();
-    let turns: Vec<[f64; 3]> = poses.iter().map(|T| T.R.log().0).collect();
+    let turns: Vec<[f64; 3]> = poses.iter().map(|T| T.R.log().0.map(angles::of_turn)).collect();
     let mut columns = vec![[vec!["frame".to_string()], names].concat()];
     for (heads, rows) in [(["x", "y", "z"], origins), (["about x", "about y", "about z"], turns)] {
         let most = largest(rows.as_flattened());

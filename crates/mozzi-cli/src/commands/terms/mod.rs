@@ -5,7 +5,7 @@ mod stacked;
 pub mod text;
 pub mod values;
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::json::print;
 use crate::quantity::quantity;
 use crate::robot::{RobotArguments, screen};
@@ -14,7 +14,7 @@ use crate::task::TaskArguments;
 use crate::text::Page;
 use crate::workload;
 use clap::Args;
-use mozzi::quantities::Query;
+use mozzi::quantities::{LIST, Of, Query};
 use serde_json::Value;
 use values::Terms;
 
@@ -44,12 +44,17 @@ pub struct TermsArguments {
 const MOST: usize = 1000;
 
 pub fn run(arguments: &TermsArguments) -> Result<String> {
+    if arguments.stacked && !arguments.only.is_empty() && !arguments.robot.json {
+        return Err(Failure::wrong("--stacked has no effect with --only: the text has these quantities alone"));
+    }
     let model = arguments.robot.load_at(|model| Ok(arguments.motion.start(model)?.0))?;
     workload::at_most(MOST, &model, "for all terms; `mozzi compute` has one quantity")?;
     let Motion { state, applied } = arguments.motion.read(&model)?;
     let environment = environment(&model, &applied);
     let mut terms = Terms::at(&model, state, &environment)?;
-    if arguments.only.is_empty() || arguments.task.task.is_some() {
+    let is_of_task = |query: &Query| query.declaration().of == Of::Task;
+    let is_shown = arguments.only.is_empty() || arguments.robot.json && arguments.only.iter().any(is_of_task);
+    if is_shown || arguments.task.task.is_some() {
         terms.add_task(&arguments.task, &environment)?;
     }
     if arguments.stacked {
@@ -58,7 +63,9 @@ pub fn run(arguments: &TermsArguments) -> Result<String> {
     if arguments.robot.json {
         let mut object = json::object(&terms);
         if let (Value::Object(entries), false) = (&mut object, arguments.only.is_empty()) {
-            let is_other = |name: &str| Query::named(name).is_ok_and(|query| !arguments.only.contains(&query));
+            let is_other = |name: &str| {
+                LIST.iter().any(|of| of.name == name) && !arguments.only.iter().any(|query| query.name() == name)
+            };
             entries.retain(|name, _| !is_other(name) && name != "newton_euler");
         }
         return Ok(print(&object));

@@ -8,10 +8,15 @@ use nalgebra::{DMatrix, DVector};
 pub fn lines(model: &Model, form: &ClosedForm, ddtheta: &[f64]) -> Vec<String> {
     let (N, n, base) = (form.G.nrows() / 6, model.n(), usize::from(model.is_floating()));
     let ddtheta = DVector::from_column_slice(ddtheta);
+    // balls and free joints have one position more than velocities
+    let (links, joints) = match model.nq() > n + base {
+        true => ("moving links, of which a ball has three and a free joint six, one for each axis", "velocities"),
+        false => ("moving links", if base == 1 { "velocities" } else { "joints" }),
+    };
+    let first = if base == 1 { ", link 1 being the floating base" } else { "" };
     let mut lines = vec![
         format!(
-            "N = {N} moving links, n = {n} {}; blocks of six rows, base to tips; blocks that are not shown are 0",
-            if base == 1 { "velocities, link 1 being the floating base" } else { "joints" }
+            "N = {N} {links}, n = {n} {joints}{first}; blocks of six rows, base to tips; blocks that are not shown are 0"
         ),
         "𝒱 = 𝒲𝒱 + 𝒜θ̇ + 𝒱_base,  𝓕 = 𝒲ᵀ𝓕 + 𝒢𝒱̇ − [ad_𝒱]ᵀ𝒢𝒱 + 𝓕_tip,  M = 𝒜ᵀℒᵀ𝒢ℒ𝒜,  τ = 𝒜ᵀ𝓕".to_string(),
     ];

@@ -3,15 +3,15 @@
 use crate::commands::compute::noise::cleaned;
 use crate::commands::compute::one_state::OneState;
 use crate::failure::{self, Failure, Result};
+use crate::missing::Missing;
 use crate::quantity::hyphenated;
 use crate::robot::end_effector;
 use crate::task::TaskArguments;
 use crate::text::about;
 use mozzi::TaskSpaceDynamics;
-use mozzi::quantities::{BiasForces, InverseDynamics, LIST, Of, Query};
+use mozzi::quantities::{self, BiasForces, InverseDynamics, LIST, Of, Query};
 use mozzi::{BodyFrame, ClosedForm, Environment, FrameId, Model, NewtonEuler, Task, TaskFrame, Wrench};
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
 
 /// The quantities of a page whose rounding errors may stand alone.
 const SHOWN: [&str; 9] = [
@@ -55,8 +55,7 @@ impl<'m> Terms<'m> {
         let tip = end_effector(model);
         let tau = model.compute(InverseDynamics, &[&theta, &dtheta, &ddtheta], environment)?.remove(0);
         let given = [("theta", &theta), ("dtheta", &dtheta), ("ddtheta", &ddtheta), ("tau", &tau)];
-        let still = Environment { applied: &[], ..*environment };
-        let mut missing: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut missing = Missing::default();
         let mut compute = |query: Query| {
             let input = |name| given.iter().find(|(known, _)| *known == name).map(|(_, values)| values.as_slice());
             let inputs: Vec<&[f64]> =
@@ -66,15 +65,10 @@ impl<'m> Terms<'m> {
                 Of::Task => return None,
                 Of::Robot | Of::Point => query,
             };
-            // here h is c + g, since JᵀF is a term of its own
-            let environment = if query == BiasForces.into() { &still } else { environment };
-            let outputs = model.compute(query, &inputs, environment);
-            outputs.map_err(|error| missing.entry(error.to_string()).or_default().push(hyphenated(query.name()))).ok()
+            missing.keep(&query, model.compute(query, &inputs, &of_term(query, *environment)))
         };
         let found = (0..LIST.len()).map(Query::at).map(&mut compute).collect();
-        for (error, names) in missing {
-            failure::note(&format!("no {}: {error}", names.join(", ")));
-        }
+        missing.note();
         Ok(Terms {
             tip,
             F_tip: environment.applied.first().map_or(Wrench::zero(), |&(_, F)| F),
@@ -97,10 +91,8 @@ impl<'m> Terms<'m> {
         let queries: Vec<Query> = SHOWN.map(Query::named).into_iter().flatten().collect();
         for query in queries {
             let Ok(one) = self.one(query, *environment) else { continue };
-            let outputs = cleaned(one.query, self.model, &one.inputs, environment, &one.outputs);
-            if query != BiasForces.into() {
-                self.found[query.index()] = Some(outputs);
-            }
+            let outputs = cleaned(one.query, self.model, &one.inputs, &one.environment, &one.outputs);
+            self.found[query.index()] = Some(outputs);
         }
     }
 
@@ -130,6 +122,7 @@ impl<'m> Terms<'m> {
             Of::Robot | Of::Point => query,
         };
         let slices: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+        let environment = of_term(query, environment);
         let outputs = self.model.compute(query, &slices, &environment)?;
         Ok(OneState { query, model: self.model, inputs, environment, outputs })
     }
@@ -164,7 +157,7 @@ impl<'m> Terms<'m> {
         }
         let Some(frame) = self.tip else { return Ok(()) };
         let task = Task { frame, coordinates: self.task_frame, rows: &self.task_rows };
-        let still = Environment { applied: &[], ..*environment };
+        let still = of_term(quantities::TaskSpaceDynamics.into(), *environment);
         match self.model.task_space_dynamics(&self.theta, &self.dtheta, task, &still) {
             Ok(dynamics) => self.task = Some(dynamics),
             Err(mozzi::Error::SingularTask { singular_values, .. }) if self.model.n() >= 6 && !is_named => {
@@ -187,6 +180,12 @@ impl<'m> Terms<'m> {
         }
         Ok(())
     }
+}
+
+/// The environment of a quantity of the equation: JᵀF is a term of its own, which neither h nor η has.
+fn of_term<'e>(query: Query, environment: Environment<'e>) -> Environment<'e> {
+    let is_still = query == BiasForces.into() || query.declaration().of == Of::Task;
+    if is_still { Environment { applied: &[], ..environment } } else { environment }
 }
 
 fn is_singular(error: &mozzi::Error) -> bool {

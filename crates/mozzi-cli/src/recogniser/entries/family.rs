@@ -1,9 +1,10 @@
 //! The columns of one group and kind: which entry each is.
 
 use super::{Family, MEANINGS, Search};
+use crate::angles;
 use crate::failure::Result;
-use crate::recogniser::reading::Entry;
-use crate::recogniser::word::{DDTHETA, DTHETA, TAU};
+use crate::recogniser::reading::{Entry, Reading};
+use crate::recogniser::word::{DDTHETA, DTHETA, TAU, THETA};
 use crate::recogniser::{Column, GROUPS, columns, endings};
 use std::collections::BTreeSet;
 
@@ -31,6 +32,7 @@ impl Search<'_> {
                 }
                 Entry::Missing => continue,
             };
+            self.check_unit(group, k, *column, reading)?;
             let factor = reading.unit.map_or(1.0, |unit| unit.factor);
             if let Some((first, _)) = found[k].replace((*column, factor)) {
                 let what = format!("the {} of `{}`", MEANINGS[group], columns::entries(self.model, GROUPS[group])[k]);
@@ -56,6 +58,26 @@ impl Search<'_> {
         let optional = if group == TAU { self.model.base().velocities() } else { 0 };
         self.check_whole(group, &found, optional)?;
         Ok(Some(found))
+    }
+
+    /// A joint that turns has no positions in mm, and one that slides none in degrees.
+    fn check_unit(&self, group: usize, entry: usize, column: usize, reading: &Reading) -> Result<()> {
+        let are_angles = match group {
+            THETA => angles::of_positions(self.model),
+            _ => angles::of_velocities(self.model),
+        };
+        let turns = are_angles[entry];
+        let Some(unit) = reading.unit.filter(|unit| unit.turns().is_some_and(|of| of != turns)) else { return Ok(()) };
+        let expected = [["m", "rad"], ["m/s", "rad/s"], ["m/s²", "rad/s²"], ["N", "N m"]][group][usize::from(turns)];
+        Err(self.wrong(&format!(
+            "column {} (`{}`) is a {} in {}, and `{}` {}: expected a unit such as {expected}",
+            column + 1,
+            self.name(column),
+            MEANINGS[group],
+            unit.name,
+            columns::entries(self.model, GROUPS[group])[entry],
+            if turns { "turns" } else { "slides" },
+        )))
     }
 
     /// The numbers of `--order 2,0,1`.

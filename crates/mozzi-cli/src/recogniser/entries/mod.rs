@@ -2,8 +2,10 @@
 
 mod complaints;
 mod family;
+mod mimic;
 mod similar;
 
+pub use mimic::Follower;
 pub use similar::{holds_names, is_alike};
 
 use super::reading::{self, Entry, Kind, Reading, suits};
@@ -35,6 +37,7 @@ pub struct Assignment {
     pub groups: [Option<Vec<Option<Column>>>; GROUPS.len()],
     pub targets: Option<Vec<Option<Column>>>,
     pub locked: Vec<Locked>,
+    pub followers: Vec<Follower>,
     pub notes: Vec<String>,
 }
 
@@ -70,6 +73,8 @@ impl Assignment {
             roles[column] = Role::Names;
         }
         let locked = search.take_locked(&mut readings, roles);
+        let followers = search.take_followers(&mut readings, roles);
+        let mut chosen: [Option<Kind>; GROUPS.len()] = [None; GROUPS.len()];
         search.resolve(&mut readings);
         let (mut origin, mut targets): (Option<usize>, _) = (None, None);
         for group in [THETA, DTHETA, DDTHETA, TAU] {
@@ -91,6 +96,7 @@ impl Assignment {
             }
             if let Some((kind, columns)) = search.choose(group, families, roles)? {
                 origin = origin.or(Some(class(kind.origin)));
+                chosen[group] = Some(kind);
                 columns.iter().enumerate().for_each(|(entry, column)| {
                     if let Some((column, _)) = column {
                         roles[*column] = Role::Value(group, entry);
@@ -99,8 +105,9 @@ impl Assignment {
                 groups[group] = Some(columns);
             }
         }
+        let followers = search.keep_followers(followers, &chosen, roles);
         search.check_spelling(roles)?;
-        Ok(Assignment { groups, targets, locked, notes: search.notes })
+        Ok(Assignment { groups, targets, locked, followers, notes: search.notes })
     }
 }
 
@@ -196,6 +203,7 @@ impl Search<'_> {
             false => self.request.order.to_vec(),
         };
         names.extend_from_slice(self.request.locked);
+        names.extend(self.mimic_joints().map(String::from));
         let joints: Vec<&str> = names.iter().map(String::as_str).collect();
         let is_franka = self.header.names.iter().any(|name| name.contains("tau_J"));
         let mut found = Vec::new();

@@ -110,7 +110,7 @@ impl Search<'_> {
                 reading.entry = Entry::Known(k);
             }
         }
-        notes.sort();
+        notes.sort_unstable();
         notes.dedup();
         if !notes.is_empty() {
             self.notes.push(format!("{}: joints of similar names: {}", self.place, notes.join(", ")));

@@ -52,6 +52,31 @@ fn one_kind_of_columns_is_preferred_and_two_of_one_kind_are_an_error() {
     assert!(why.contains("is a position in N m"), "{why}");
 }
 
+#[test]
+fn units_are_those_of_the_joints() {
+    let slider = r#"<robot name="s"><link name="b"/><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1"
+        izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="rail" type="prismatic"><parent link="b"/>
+        <child link="a"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"#;
+    let slider = mozzi_urdf::parse("s.urdf", slider).expect("sound").description.build().expect("sound");
+    for (header, parts) in [
+        ("t,theta_1 [deg]", ["column 2 (`theta_1 [deg]`)", "a position in deg, and `rail` slides"]),
+        ("t,theta_1,dtheta_1 [rpm]", ["column 3 (`dtheta_1 [rpm]`)", "such as m/s"]),
+        ("t,theta_1,tau_1 [N m]", ["column 3 (`tau_1 [N m]`)", "such as N"]),
+    ] {
+        let why = find_in(&slider, header, &[]).expect_err(header);
+        assert!(parts.iter().all(|part| why.contains(part)), "{why}");
+    }
+    assert!(find_in(&slider, "t,theta_1 [mm],dtheta_1 [mm/s],tau_1 [N]", &[]).is_ok());
+    for (header, part) in [
+        ("t,theta_1 [mm],theta_2 [deg]", "a position in mm, and `joint1` turns"),
+        ("t,theta_1,theta_2,tau_1 [N m],tau_2 [N]", "a force in N, and `joint2` turns"),
+        ("t,theta_1,theta_2,ddtheta_1 [m/s2],ddtheta_2", "such as rad/s²"),
+    ] {
+        let why = find(header, &[]).expect_err(header);
+        assert!(why.contains(part), "{why}");
+    }
+}
+
 /// A pose without its quaternion: no joint can be locked for it.
 #[test]
 fn a_base_is_no_joint_to_lock() {

@@ -1,7 +1,7 @@
 //! A difference between the robots, and how it acts.
 
 use mozzi::model::description::{Joint, JointKind, Rotor};
-use mozzi::{Description, SE3, SpatialInertia};
+use mozzi::{Description, SE3, SO3, SpatialInertia, Vec3};
 
 /// A change that makes a number of the first robot the second's.
 #[derive(Clone, Debug)]
@@ -12,6 +12,8 @@ pub enum Change {
     Parent(String, String, SE3, JointKind),
     /// The names of two joints are exchanged.
     Names([String; 2]),
+    /// The second joint, which the first one carries, comes before it.
+    Order([String; 2]),
     /// The inertias of these links.
     Inertia(Vec<(String, SpatialInertia)>),
     /// A rotor becomes another, or is removed.
@@ -30,6 +32,9 @@ pub enum Property {
     Stiffness(f64),
     SpringReference(f64),
     Place(SE3, JointKind),
+    Position(Vec3),
+    Rotation(SO3),
+    Kind(JointKind),
 }
 
 /// A cause.
@@ -45,8 +50,8 @@ pub struct Cause {
     pub change: Change,
     /// Effect of the change alone: "gravity torque of `joint6` by up to 0.97 N m".
     pub effect: Option<String>,
-    /// The size of the difference apart from its forces: relative lengths and angles of a place, infinite of a change
-    /// without forces, 0 of others.
+    /// The size of the difference apart from its forces: relative lengths and angles of a place, the part of a limit,
+    /// infinite of another change without forces, 0 of others.
     pub size: f64,
 }
 
@@ -80,6 +85,7 @@ impl Change {
                 robot.rotors.extend(other.clone().map(|other| Rotor { name: name.clone(), ..other }));
             }
             Change::Names(names) => exchange(robot, names),
+            Change::Order(names) => reorder(robot, names),
             Change::NoForce => {}
         }
     }
@@ -92,6 +98,28 @@ pub fn exchange(robot: &mut Description, [one, two]: &[String; 2]) {
         name if name == two => Some(one.clone()),
         _ => None,
     });
+}
+
+/// Puts the second joint before the first one, which carries it.
+fn reorder(robot: &mut Description, names: &[String; 2]) {
+    let place = |name: &String| robot.joints.iter().position(|joint| joint.name == *name);
+    let [Some(one), Some(two)] = names.each_ref().map(place) else { return };
+    let [mut x, mut y] = [one, two].map(|k| robot.joints[k].clone());
+    let T = y.origin;
+    (x.kind, y.kind) = (seen_from(x.kind, T.inverse()), seen_from(y.kind, T));
+    std::mem::swap(&mut x.parent, &mut y.parent);
+    std::mem::swap(&mut x.child, &mut y.child);
+    std::mem::swap(&mut x.origin, &mut y.origin);
+    (robot.joints[one], robot.joints[two]) = (y, x);
+}
+
+/// A joint's motion in the coordinates of a frame in which its own is `T`.
+pub fn seen_from(kind: JointKind, T: SE3) -> JointKind {
+    match kind {
+        JointKind::Screw(A) => JointKind::Screw(A.transformed(T)),
+        JointKind::Ball(center) => JointKind::Ball(T * center),
+        kind => kind,
+    }
 }
 
 /// Gives joints other names, also where rotors have them.
@@ -114,6 +142,9 @@ impl Property {
             Property::Stiffness(x) => joint.stiffness = x,
             Property::SpringReference(x) => joint.spring_reference = x,
             Property::Place(origin, kind) => (joint.origin, joint.kind) = (origin, kind),
+            Property::Position(p) => joint.origin.p = p,
+            Property::Rotation(R) => joint.origin.R = R,
+            Property::Kind(kind) => joint.kind = kind,
         }
     }
 }

@@ -4,9 +4,9 @@ use super::cause::{Cause, Change, exchange};
 use super::forces::{Gaps, States, agree, agree_at_rest};
 use super::matching::matched;
 use super::number::shown;
-use super::{RobotFile, constraints, frames, joints, merged, report, rotors, shapes, starts};
+use super::places::Places;
+use super::{RobotFile, actuation, constraints, frames, joints, merged, report, rotors, shapes, starts, trial};
 use crate::compare::Result;
-use crate::compare::constants::home;
 use serde_json::Value;
 
 /// The result of comparing two files of a robot.
@@ -21,6 +21,8 @@ pub struct FilesComparison {
     /// The velocities whose forces are compared: those of these joints and of a base that floats in both.
     pub(super) rows: usize,
     pub(super) renamed: Vec<(String, String)>,
+    /// Those of them that are not known by their places.
+    pub(super) named: Vec<String>,
     /// Links under other names in the second file.
     pub(super) links: Vec<(String, String)>,
     pub(super) only: [Vec<String>; 2],
@@ -29,14 +31,13 @@ pub struct FilesComparison {
     /// As the files are, and with all causes accounted for.
     pub(super) before: Gaps,
     pub(super) after: Gaps,
-    pub(super) units: [String; 3],
     pub(super) causes: Vec<Cause>,
     /// Differences without an effect on the verdict.
     pub(super) notes: Vec<String>,
 }
 
 /// Compares two files of a robot at random states within the first one's limits. `tolerance` is the largest accepted
-/// difference of M and of the forces, as a part of the largest of them.
+/// difference of M and of the forces, as a part of each joint's largest, and of limits and places.
 ///
 /// # Errors
 /// [`Error`](crate::compare::Error) if a robot with independent joints cannot be built.
@@ -60,40 +61,35 @@ pub fn compare_files(
     // causes are sought behind exchanged names
     let exchanged = matched.exchanged();
     exchanged.iter().for_each(|names| exchange(&mut matched.b, names));
-    let mut causes = joints::causes(&matched, &b.name, base.is_some())?;
+    // what hangs on another body is compared there
+    let mut causes = joints::tree(&Places::of([&matched.a, &matched.b])?, &b.name);
+    let mut moved = matched.a.clone();
+    causes.iter().for_each(|cause| cause.change.apply(&mut moved));
+    let moved = if moved.clone().build().is_ok() { moved } else { matched.a.clone() };
+    let places = Places::of([&moved, &matched.b])?;
+    causes.extend(joints::causes(&places, &b.name, base.is_some()));
     causes.extend(rotors::causes(&matched, &b.name));
-    let mut accounted = matched.a.clone();
-    causes.iter().for_each(|cause| cause.change.apply(&mut accounted));
-    let home_a = home(&accounted).or_else(|_| home(&matched.a))?;
-    let (of_bodies, mut notes) = merged::causes(&matched, &home_a, [a, b])?;
-    let is_moved = causes.iter().any(|cause| ["place", "type"].contains(&cause.kind) && !cause.name.is_empty());
-    let of_frames = frames::causes(&matched, [&home_a, &home(&matched.b)?], &b.name, is_moved)?;
+    let (of_bodies, mut notes) = merged::causes(&matched, &places, [a, b])?;
+    let of_frames = frames::causes(&places, &b.name);
     notes.extend(frames::notes(&matched, [&one, &two], [&a.name, &b.name])?);
-    of_bodies.iter().for_each(|cause| cause.change.apply(&mut accounted));
     causes.extend(of_bodies);
     if let Some(names) = exchanged {
         let sentence = format!("{} has the names of `{}` and `{}` exchanged", b.name, names[0], names[1]);
-        let cause = Cause::new("names", &names[0].clone(), sentence, true, Change::Names(names));
-        cause.change.apply(&mut accounted);
-        causes.push(cause);
+        causes.push(Cause::new("names", &names[0].clone(), sentence, true, Change::Names(names)));
     }
-    let after = match states_of.numbers(&accounted) {
-        Ok(accounted) => states_of.gaps(&accounted, &theirs),
-        Err(_) => before.clone(), // a robot that cannot be built explains nothing
-    };
-    for cause in &mut causes {
-        let mut robot = matched.a.clone();
-        cause.change.apply(&mut robot);
-        let Ok(changed) = states_of.numbers(&robot) else { continue };
-        cause.effect = report::effect(&states_of, &states_of.gaps(&mine, &changed));
-    }
+    let after = trial::tried(&mut causes, &states_of, &matched.a, [&mine, &theirs]);
     let there = |name: &str| matched.joint_there(name).to_string();
     causes.extend(of_frames);
-    causes.extend(joints::silent(&one, &two, &there, &b.name));
+    let (of_limits, unheld) = joints::silent(&one, &two, &there, [a, b]);
+    causes.extend(of_limits);
+    notes.extend(unheld);
     causes.extend(constraints::causes([&one, &two], &there, [&a.name, &b.name])?);
     let (of_starts, states_alone) = starts::compared(&matched, [a, b], base.is_none())?;
     causes.extend(of_starts);
     notes.extend(states_alone);
+    let (compensated, of_actuators) = actuation::compared([a, b]);
+    causes.extend(compensated);
+    notes.extend(of_actuators);
     let is_link = |robot: &mozzi::Description, name: &str| robot.links.iter().any(|link| link.name == name);
     notes.extend(shapes::notes([a, b], &|link| is_link(&one, link) && is_link(&two, link)));
     notes.extend(base_masses([&one, &two], [a, b])?);
@@ -103,7 +99,6 @@ pub fn compare_files(
     }
     let common =
         matched.a.joints.iter().filter(|joint| joint.kind != mozzi::model::description::JointKind::Fixed).count();
-    let units = [0, 1, 2].map(|k| before[k].joints.first().map_or("N m", |joint| states_of.unit(joint)).to_string());
     Ok(FilesComparison {
         names: [a.name.clone(), b.name.clone()],
         states,
@@ -112,12 +107,12 @@ pub fn compare_files(
         common,
         rows,
         renamed: matched.renamed,
+        named: matched.named,
         links: matched.links,
         only: [matched.only_a, matched.only_b],
         base,
         before,
         after,
-        units,
         causes,
         notes,
     })

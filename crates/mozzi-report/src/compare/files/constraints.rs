@@ -113,7 +113,7 @@ impl<'d, 'n> Side<'d, 'n> {
                 joints.iter().chain(source).map(|gear| (self.names)(&gear.joint)).collect()
             }
         };
-        held.sort();
+        held.sort_unstable();
         held
     }
 

@@ -3,29 +3,20 @@
 
 use super::cause::{Cause, Change};
 use super::matching::Matched;
-use super::place::{Places, away, distance, of_origin, rounded, same_place};
+use super::place::{away, of_origin, rounded};
+use super::places::{Places, distance, same_place};
 use crate::compare::constants::home;
 use crate::compare::{Result, vocabulary};
 use mozzi::model::description::{Anchor, Constraint, ConstraintKind, JointKind};
 use mozzi::{Description, SE3, SpatialInertia};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A cause for each frame of both robots that is elsewhere. `homes` has the poses at home, of the first robot with the
-/// causes of its joints accounted for; `is_moved` if there are such causes.
-pub fn causes(
-    matched: &Matched,
-    homes: [&BTreeMap<String, SE3>; 2],
-    other: &str,
-    is_moved: bool,
-) -> Result<Vec<Cause>> {
-    let robots = [&matched.a, &matched.b];
-    let places = Places::of(robots)?;
-    // relative to bases that stand elsewhere, which are a cause themselves
-    let bases = places.bases().filter(|_| !is_moved).unwrap_or([SE3::identity(); 2]);
-    let pose = |k: usize, name: &str| homes[k].get(name).map(|T| bases[k].inverse() * *T);
+/// A cause for each frame of both robots that is elsewhere on its body.
+pub fn causes(places: &Places, other: &str) -> Vec<Cause> {
+    let robots = places.robots;
     let frame = |name: &str| -> Option<Cause> {
         let [on, there] = [link_of(robots[0], name)?, link_of(robots[1], name)?];
-        let [p, q] = [pose(0, name)?, pose(1, name)?];
+        let [p, q] = [*places.homes[0].get(name)?, places.seen(name)?];
         let new = |size: f64, words: String, has_reason: bool| {
             let sentence = format!("frame `{name}` {words}");
             Some(Cause { size, ..Cause::new("place", name, sentence, has_reason, Change::NoForce) })
@@ -33,11 +24,11 @@ pub fn causes(
         if places.carrier(0, on) != places.carrier(1, there) {
             return new(1.0, format!("is on `{there}` in {other}, on `{on}` here"), true);
         }
-        let local = pose(1, on).map(|T| [pose(0, on).unwrap_or(p).inverse() * p, T.inverse() * q]);
-        let is_carried = is_moved && local.is_some_and(|[x, y]| same_place(x, y));
-        if same_place(p, q) || is_carried {
+        if same_place(p, q) {
             return None;
         }
+        let local =
+            places.seen(on).map(|T| [places.homes[0].get(on).copied().unwrap_or(p).inverse() * p, T.inverse() * q]);
         let (size, why) = (distance(p, q), local.and_then(|[x, y]| of_origin(x, y)));
         match (rounded(size), why) {
             (true, _) => new(size, format!("is rounded in {other}: its place differs by {size:.0e}"), true),
@@ -47,7 +38,7 @@ pub fn causes(
     };
     let named: BTreeSet<&str> =
         robots.iter().flat_map(|robot| &robot.frames).map(|frame| frame.name.as_str()).collect();
-    Ok(named.into_iter().filter_map(frame).collect())
+    named.into_iter().filter_map(frame).collect()
 }
 
 /// The link of a frame, or the link of this name.

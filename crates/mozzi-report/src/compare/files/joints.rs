@@ -1,22 +1,31 @@
 //! Differences in the numbers of joints.
 
+use super::RobotFile;
 use super::cause::{Cause, Change, Property};
-use super::matching::Matched;
+use super::matching::twin;
 use super::number::{Angle, instead, reason, same, shown, ten};
-use super::place::Places;
-use crate::compare::Result;
+use super::places::Places;
+use crate::compare::vocabulary;
 use mozzi::Description;
 use mozzi::model::description::{Joint, JointKind};
 
+/// Joints in another order, or else on another body.
+pub fn tree(places: &Places, other: &str) -> Vec<Cause> {
+    let [a, b] = places.robots;
+    let pairs = a.joints.iter().flat_map(|one| a.joints.iter().map(move |two| (one, two)));
+    let orders: Vec<Cause> = pairs.filter_map(|(one, two)| places.of_order(one, two, other)).collect();
+    let parents = || a.joints.iter().filter_map(|joint| places.of_parent(joint, twin(joint, b)?, other)).collect();
+    if orders.is_empty() { parents() } else { orders }
+}
+
 /// Gravity, friction, springs, armature and places, which enter the forces; `is_held` if one of the bases is free.
-pub fn causes(matched: &Matched, other: &str, is_held: bool) -> Result<Vec<Cause>> {
-    let (a, b) = (&matched.a, &matched.b);
+pub fn causes(places: &Places, other: &str, is_held: bool) -> Vec<Cause> {
+    let [a, b] = places.robots;
     let mut causes = Vec::new();
     if a.gravity.iter().zip(b.gravity).any(|(x, y)| !same(*x, y)) {
         let sentence = format!("gravity is {:?} in {other}, {:?} here", b.gravity, a.gravity);
         causes.push(Cause::new("gravity", "", sentence, true, Change::Gravity(b.gravity)));
     }
-    let places = Places::of([a, b])?;
     for joint in &a.joints {
         let Some(there) = twin(joint, b) else { continue };
         let moves = joint.kind != JointKind::Fixed;
@@ -46,12 +55,10 @@ pub fn causes(matched: &Matched, other: &str, is_held: bool) -> Result<Vec<Cause
             let change = Change::Joint(joint.name.clone(), make(y));
             causes.push(Cause::new(kind(what), &joint.name, sentence, has_reason, change));
         }
-        causes.extend(places.cause(joint, there, other));
+        causes.extend(places.causes(joint, there, other));
     }
-    if !causes.iter().any(|cause| cause.kind == "place") {
-        causes.extend(places.of_base(other, is_held)); // no joint below it was named
-    }
-    Ok(causes)
+    causes.extend(places.of_base(other, is_held));
+    causes
 }
 
 /// Positions of a prismatic joint are no angles.
@@ -71,25 +78,24 @@ fn gear(a: f64, b: f64) -> Option<String> {
     (is_whole && !is_ten).then(|| format!("lacks the square of the gear ratio {}", ratio.round()))
 }
 
-/// The corresponding joint of the other robot: by name if it moves, by its child if it is fixed.
-pub fn twin<'b>(joint: &Joint, b: &'b Description) -> Option<&'b Joint> {
-    match joint.kind {
-        JointKind::Fixed => b.joints.iter().find(|there| there.kind == JointKind::Fixed && there.child == joint.child),
-        _ => b.joints.iter().find(|there| there.name == joint.name && there.kind != JointKind::Fixed),
-    }
-}
-
-/// Limits and couplings, which enter no force of independent joints.
-pub fn silent(a: &Description, b: &Description, names: &dyn Fn(&str) -> String, other: &str) -> Vec<Cause> {
-    let mut causes = Vec::new();
+/// Limits and couplings, which enter no force of independent joints, and a note on limits that a format does not hold.
+pub fn silent(
+    a: &Description,
+    b: &Description,
+    names: &dyn Fn(&str) -> String,
+    files: [&RobotFile; 2],
+) -> (Vec<Cause>, Option<String>) {
+    let other = &files[1].name;
+    let (mut causes, mut unheld) = (Vec::new(), Vec::new());
     for joint in a.joints.iter().filter(|joint| joint.kind != JointKind::Fixed) {
         let name = names(&joint.name);
         let Some(there) = b.joints.iter().find(|there| there.name == name && there.kind != JointKind::Fixed) else {
             continue;
         };
-        let mut add = |kind, sentence: String, has_reason| {
-            causes.push(Cause::new(kind, &joint.name, sentence, has_reason, Change::NoForce));
+        let mut add = |size: f64, kind, sentence: String, has_reason| {
+            causes.push(Cause { size, ..Cause::new(kind, &joint.name, sentence, has_reason, Change::NoForce) });
         };
+        let part = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs());
         let rates = [
             ("velocity limit", joint.limits.velocity, there.limits.velocity, Angle::Of),
             ("effort limit", joint.limits.effort, there.limits.effort, Angle::None),
@@ -100,35 +106,64 @@ pub fn silent(a: &Description, b: &Description, names: &dyn Fn(&str) -> String, 
         let [v, f, w, g] = [joint.limits.velocity, joint.limits.effort, there.limits.velocity, there.limits.effort];
         let is_exchanged = v != f && v == g && f == w;
         if is_exchanged {
-            add("limits", format!("{other} has the limits of velocity and effort of `{}` exchanged", joint.name), true);
+            add(
+                f64::INFINITY,
+                "limits",
+                format!("{other} has the limits of velocity and effort of `{}` exchanged", joint.name),
+                true,
+            );
         }
-        for (what, x, y, angle) in rates.into_iter().skip(if is_exchanged { 2 } else { 0 }) {
+        let is_negated = matches!((joint.limits.position, there.limits.position), (Some([p, q]), Some([r, s]))
+            if same(r, -q) && same(s, -p) && !same(p, r));
+        if is_negated {
+            let words = "are negated and exchanged, as with the reversed axis,";
+            add(f64::INFINITY, "limits", format!("limits of position of `{}` {words} in {other}", joint.name), true);
+        }
+        let rates = rates.into_iter().take(if is_negated { 3 } else { 5 });
+        for (what, x, y, angle) in rates.skip(if is_exchanged { 2 } else { 0 }) {
             let subject = format!("{what} of `{}`", joint.name);
+            let is_rate = ["velocity limit", "acceleration limit"].contains(&what);
+            if is_rate && [x, y].iter().zip(files).any(|(limit, file)| limit.is_none() && !file.has_rates) {
+                unheld.extend(x.or(y).map(|_| subject));
+                continue;
+            }
             match (x, y) {
-                (Some(x), None) => add("limits", format!("{subject} is dropped in {other}: it was {}", shown(x)), true),
-                (None, Some(y)) => add("limits", format!("{subject} appears in {other}: {}", shown(y)), true),
+                (Some(x), None) => {
+                    add(f64::INFINITY, "limits", format!("{subject} is dropped in {other}: it was {}", shown(x)), true)
+                }
+                (None, Some(y)) => {
+                    add(f64::INFINITY, "limits", format!("{subject} appears in {other}: {}", shown(y)), true)
+                }
                 (Some(x), Some(y)) if !same(x, y) => {
                     let unit = || reason(x, y, of_kind(joint, angle));
                     let why = if y == 0.0 { Some("is 0".to_string()) } else { unit() };
                     let has_reason = why.is_some();
                     let why = why.unwrap_or_else(|| "differs".to_string());
-                    add("limits", format!("{subject} {why} in {other}: {}", instead(x, y)), has_reason);
+                    add(part(x, y), "limits", format!("{subject} {why} in {other}: {}", instead(x, y)), has_reason);
                 }
                 _ => {}
             }
         }
         let Some((x, y)) = joint.mimic.as_ref().map(|x| (x, there.mimic.as_ref())) else {
             if there.mimic.is_some() {
-                add("mimic", format!("`{}` follows another joint in {other} only", joint.name), true);
+                add(f64::INFINITY, "mimic", format!("`{}` follows another joint in {other} only", joint.name), true);
             }
             continue;
         };
         match y {
-            None => {
-                add("mimic", format!("`{}` follows `{}` here, and moves freely in {other}", joint.name, x.joint), true)
-            }
+            None => add(
+                f64::INFINITY,
+                "mimic",
+                format!("`{}` follows `{}` here, and moves freely in {other}", joint.name, x.joint),
+                true,
+            ),
             Some(y) if names(&x.joint) != y.joint => {
-                add("mimic", format!("`{}` follows `{}` in {other}, `{}` here", joint.name, y.joint, x.joint), true);
+                add(
+                    f64::INFINITY,
+                    "mimic",
+                    format!("`{}` follows `{}` in {other}, `{}` here", joint.name, y.joint, x.joint),
+                    true,
+                );
             }
             Some(y) => {
                 for (what, p, q, neutral, angle) in [
@@ -148,11 +183,14 @@ pub fn silent(a: &Description, b: &Description, names: &dyn Fn(&str) -> String, 
                             shown(q),
                             shown(p)
                         );
-                        add("mimic", sentence, is_lost || reason(p, q, angle).is_some());
+                        add(part(p, q), "mimic", sentence, is_lost || reason(p, q, angle).is_some());
                     }
                 }
             }
         }
     }
-    causes
+    let without = || &files.iter().find(|file| !file.has_rates).unwrap_or(&files[1]).name;
+    let list = || vocabulary::some(&unheld, String::clone);
+    let note = (!unheld.is_empty()).then(|| format!("not held by the format of {}: {}", without(), list()));
+    (causes, note)
 }

@@ -2,25 +2,23 @@
 
 use super::RobotFile;
 use super::cause::{Cause, Change};
-use super::inertia::{Body, alike, near, reason, steiner, sum};
+use super::inertia::{Body, alike, difference, near, rounding, steiner, sum};
 use super::matching::Matched;
-use super::number::shown;
+use super::places::Places;
 use super::solid;
 use crate::compare::Result;
-use crate::compare::constants::{home, same_body};
+use crate::compare::constants::same_body;
 use mozzi::{Description, SE3, SO3, SpatialInertia, Sym3, Vec3};
 use std::collections::BTreeMap;
 
 /// Compares the inertias of all bodies that move. A body whose inertia differs is a cause; a body of equal inertia
-/// that its links share in another way is a note. `home_a` has the first robot's links with the causes of its joints
-/// accounted for.
-pub fn causes(
-    matched: &Matched,
-    home_a: &BTreeMap<String, SE3>,
-    files: [&RobotFile; 2],
-) -> Result<(Vec<Cause>, Vec<String>)> {
-    let robots = [&matched.a, &matched.b];
-    let home_b = home(robots[1])?;
+/// that its links share in another way is a note.
+pub fn causes(matched: &Matched, places: &Places, files: [&RobotFile; 2]) -> Result<(Vec<Cause>, Vec<String>)> {
+    let robots = places.robots;
+    let home_a = &places.homes[0];
+    // where the first robot would have the second one's links
+    let seen = |link: &str| (link.to_string(), places.seen(link).unwrap_or_else(SE3::identity));
+    let home_b: BTreeMap<String, SE3> = robots[1].links.iter().map(|link| seen(&link.name)).collect();
     let (model_a, model_b) = (robots[0].clone().build()?, robots[1].clone().build()?);
     let (bodies_a, bodies_b) = (model_a.folded_links(), model_b.folded_links());
     let axes = |file: &RobotFile, name: &str| file.inertial_axes.get(name).copied();
@@ -45,7 +43,8 @@ pub fn causes(
         }
         if is_light(robots[0], &only_a) && is_light(robots[1], &only_b) {
             for name in names.iter().filter(|name| others.contains(name)) {
-                causes.extend(of_link(name, matched, [home_a[*name], home_b[*name]], files, &only_a));
+                let homes = [home_a[*name], home_b[*name]];
+                causes.extend(of_link(name, matched, robots, homes, files, &only_a));
             }
             continue;
         }
@@ -116,8 +115,15 @@ fn merged_links(bodies: [&[&str]; 2], robots: [&Description; 2], files: [&RobotF
 }
 
 /// A link that both have.
-fn of_link(name: &str, matched: &Matched, homes: [SE3; 2], files: [&RobotFile; 2], alone: &[&str]) -> Option<Cause> {
-    let (robots, called) = ([&matched.a, &matched.b], [name, matched.link_there(name)]);
+fn of_link(
+    name: &str,
+    matched: &Matched,
+    robots: [&Description; 2],
+    homes: [SE3; 2],
+    files: [&RobotFile; 2],
+    alone: &[&str],
+) -> Option<Cause> {
+    let called = [name, matched.link_there(name)];
     let (a, b) = (inertia(robots[0], name), inertia(robots[1], name));
     // in the first robot's link frame
     let into = homes[0].inverse() * homes[1];
@@ -127,16 +133,14 @@ fn of_link(name: &str, matched: &Matched, homes: [SE3; 2], files: [&RobotFile; 2
         return None;
     }
     let axes = [0, 1].map(|k| files[k].inertial_axes.get(called[k]).copied());
-    let solid = solid::of_link(files[0], called[0]).or_else(|| solid::of_link(files[1], called[1]));
+    let solids = [0, 1].map(|k| solid::of_link(files[k], called[k])).concat();
     let names = [files[0].name.as_str(), files[1].name.as_str()];
     let twice = alone.is_empty().then(|| counted_twice(name, robots[0], a, other)).flatten();
     let why = twice.map(|child| format!("{} counts the mass of `{child}` twice, also in `{name}`", names[1]));
-    let why = why.or_else(|| reason(names, name, [Body::of(a), Body::of(other)], axes, solid));
-    let has_reason = why.is_some();
-    let sentence = why.unwrap_or_else(|| {
-        let (m, n) = (shown(a.mass), shown(other.mass));
-        format!("{} has another inertia of `{name}` ({n} kg, here {m} kg): no known reason", names[1])
-    });
+    let (sentence, has_reason) = match why {
+        Some(why) => (why, true),
+        None => difference(names, name, [Body::of(a), Body::of(other)], axes, &solids),
+    };
     Some(Cause::new("inertia", name, sentence, has_reason, Change::Inertia(vec![(name.to_string(), other)])))
 }
 
@@ -200,6 +204,11 @@ fn merged([one, other]: [&str; 2], first: &str, parts: &[Part], missing: &[bool]
     let (all, one_each) = (|_: bool| true, |_: bool| 1.0);
     let true_moment = |part: &Part| part.body.I;
     let says = |what: &str| Some(format!("{other} merges {list} into `{first}` {what}; {one} has it as a link"));
+    let whole = total(&true_moment, &all, &one_each);
+    if let Some(worst) = rounding(whole, b) {
+        let all = format!("{other} merges {list} into `{first}`, rounded");
+        return Some(format!("{all}: its numbers differ by up to {worst:.0e} of the largest"));
+    }
     if is_b(total(&|part| part.without(true, false), &all, &one_each)) {
         return says("without the rotation of its inertial");
     }

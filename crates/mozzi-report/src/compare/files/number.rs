@@ -67,9 +67,37 @@ pub fn ten(ratio: f64) -> Option<i32> {
     is_power.then_some(power as i32)
 }
 
+/// Metres in an inch.
+pub const INCH: f64 = 0.0254;
+
+/// The unit that multiplies lengths by this ratio, in words that follow a name.
+pub fn length(ratio: f64) -> Option<String> {
+    let is = |x: f64| (ratio / x - 1.0).abs() < 1e-5;
+    match ten(ratio) {
+        Some(3) => Some("in mm".to_string()),
+        Some(power) => Some(format!("off by a factor 1e{power}, a unit")),
+        None if is(1.0 / INCH) => Some("in inches".to_string()),
+        None => is(INCH).then(|| "converted as if it were in inches".to_string()),
+    }
+}
+
 /// At most six digits.
 pub fn shown(x: f64) -> String {
     let rounded = format!("{x:.5e}").parse::<f64>().unwrap_or(x);
     let is_plain = rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs());
     if is_plain { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+/// Three digits.
+pub fn digits(x: f64) -> String {
+    format!("{x:.2e}").parse::<f64>().map_or_else(|_| x.to_string(), shown)
+}
+
+/// The number of decimals, two or more, to which all numbers of the second list are rounded.
+pub fn decimals(x: &[f64], y: &[f64]) -> Option<i32> {
+    (2..=6).find(|&count| {
+        let unit = 10f64.powi(-count);
+        let is_whole = |y: f64| (y - (y / unit).round() * unit).abs() < 1e-9 * unit;
+        x != y && x.iter().zip(y).all(|(x, y)| (x - y).abs() <= 0.5001 * unit && is_whole(*y))
+    })
 }

@@ -1,35 +1,14 @@
 //! The comparison of two files as text and as JSON.
 
 use super::comparison::FilesComparison;
-use super::forces::{Gap, Gaps, States};
-use super::number::shown;
+use super::forces::{Gap, Gaps};
+use super::number::digits;
 use crate::compare::vocabulary;
 use crate::text::Page;
 use serde_json::{Value, json};
 
 /// Causes beyond this number are counted.
 const SHOWN: usize = 40;
-
-/// Effect of a change on gravity torques, or else on torques, or else on M.
-pub fn effect(states: &States, [M, g, tau]: &Gaps) -> Option<String> {
-    let counts = |gap: &Gap, scale: f64| gap.most > 1e-12 * gap.scale.max(scale) && gap.most > 0.0;
-    let of = |gap: &Gap, what: &str| {
-        let joint = gap.joints.first()?;
-        Some(format!("{what} of {joint} by up to {} {}", digits(gap.most), states.unit(joint)))
-    };
-    if counts(g, tau.scale) {
-        return of(g, "gravity torque");
-    }
-    if counts(tau, 0.0) {
-        return of(tau, "torque");
-    }
-    counts(M, 0.0).then(|| format!("M[{}] by up to {}", M.joints.join(", "), digits(M.most)))
-}
-
-/// Three digits.
-fn digits(x: f64) -> String {
-    format!("{x:.2e}").parse::<f64>().map_or_else(|_| x.to_string(), shown)
-}
 
 fn verdict(it: &FilesComparison) -> String {
     let alone: usize = it.only.iter().map(Vec::len).sum();
@@ -69,12 +48,13 @@ pub fn text(it: &FilesComparison) -> String {
     page.line(format!("{a} and {b}: {}", verdict(it)));
     if it.is_compared() {
         page.line(format!(
-            "{} moving joints in both, {} random states of seed {}, tolerance {:e} of the largest number",
+            "{} moving joints in both, {} random states of seed {}, tolerance {:e} of each joint's largest number",
             it.common, it.states, it.seed, it.tolerance
         ));
     }
     for (here, there) in &it.renamed {
-        page.line(format!("  `{here}` is `{there}` in {b}, known by its place"));
+        let by = if it.named.contains(here) { "name" } else { "place" };
+        page.line(format!("  `{here}` is `{there}` in {b}, known by its {by}"));
     }
     if !it.links.is_empty() {
         let names = vocabulary::some(&it.links, |(here, there)| format!("`{here}` is `{there}`"));
@@ -90,18 +70,17 @@ pub fn text(it: &FilesComparison) -> String {
         page.line(format!("  {base}"));
     }
     let labels = ["M", "gravity torque", "torque"];
-    let is_there =
-        |gap: &Gap| gap.most > it.tolerance * gap.scale.max(if it.forces_agree() { f64::INFINITY } else { 0.0 });
+    let is_there = |gap: &Gap| gap.part > it.tolerance && !it.forces_agree();
     let of_common = if it.only.iter().all(Vec::is_empty) { "" } else { " of the joints in both" };
     if it.forces_agree() {
         page.line(format!("  M, gravity torques and torques{of_common} agree"));
     }
-    for ((gap, what), unit) in it.before.iter().zip(labels).zip(&it.units).filter(|((gap, _), _)| is_there(gap)) {
+    for (gap, what) in it.before.iter().zip(labels).filter(|(gap, _)| is_there(gap)) {
         let place = gap.joints.join(", ");
         let (most, scale) = (digits(gap.most), digits(gap.scale));
         page.line(match what {
             "M" => format!("  {what}[{place}] differs by up to {most}, of {scale}"),
-            _ => format!("  {what} of {place} differs by up to {most} {unit}, of {scale}"),
+            _ => format!("  {} of {place} differs by up to {most} {}, of {scale}", gap.name(what), gap.unit),
         });
     }
     for cause in it.causes.iter().take(SHOWN) {
@@ -117,8 +96,8 @@ pub fn text(it: &FilesComparison) -> String {
         page.line(format!("  note: {note}"));
     }
     if !it.forces_agree() && it.is_compared() {
-        let part = |gap: &Gap| if gap.scale > 0.0 { gap.most / gap.scale } else { 0.0 };
-        let worst = it.after.iter().map(part).fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most });
+        let worst =
+            it.after.iter().map(|gap| gap.part).fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most });
         page.line(format!("  with all of these accounted for, the forces{of_common} agree to {worst:.0e}"));
     }
     page.end()
@@ -126,7 +105,7 @@ pub fn text(it: &FilesComparison) -> String {
 
 pub fn json(it: &FilesComparison) -> Value {
     let gaps = |gaps: &Gaps| {
-        let gap = |gap: &Gap| json!({ "most": gap.most, "of": gap.scale, "joints": gap.joints });
+        let gap = |gap: &Gap| json!({ "most": gap.most, "of": gap.scale, "joints": gap.joints, "unit": gap.unit, "part": gap.part });
         json!({ "mass_matrix": gap(&gaps[0]), "gravity_forces": gap(&gaps[1]), "inverse_dynamics": gap(&gaps[2]) })
     };
     json!({

@@ -5,6 +5,7 @@ use super::skeleton::Axis;
 use super::solid::Solid;
 use super::view::{Point, Projection};
 use crate::markup::{SANS, escaped};
+use mozzi::spatial::Rounded;
 use mozzi::{SE3, Vec3};
 use std::fmt::Write;
 
@@ -176,7 +177,7 @@ impl Canvas {
         let length = [5.0, 2.0, 1.0].map(|k| k * power).into_iter().find(|l| *l <= longest).unwrap_or(power);
         let (end, bar) = (WIDTH - 24.0, length * self.scale);
         let (start, y, text) = (end - bar, self.height - 22.0, self.ink.text);
-        let name = if length < 0.1 { format!("{} mm", (1e3 * length).round()) } else { format!("{length} m") };
+        let name = if length < 0.1 { format!("{} mm", Rounded(1e3 * length)) } else { format!("{length} m") };
         let _ = writeln!(
             self.body,
             "<g class=\"scale\"><path d=\"M{start:.1} {:.1}v8m0 -4h{bar:.1}m0 -4v8\" stroke=\"{text}\"/>\

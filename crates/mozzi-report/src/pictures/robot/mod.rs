@@ -173,11 +173,11 @@ fn capsule([from, to]: [Vec3; 2], radius: f64) -> Option<(Form, SE3)> {
 /// "ur5, 6 joints, 21.0 kg".
 fn title(model: &Model) -> String {
     let robot = model.description();
-    let joints = model.joint_names().len();
+    let joints = mozzi_urdf::counted(model.joint_names().len(), "joint");
     let mass: f64 = robot.links.iter().map(|link| link.inertia.mass).sum();
     let base = if robot.base == Base::Floating { ", floating base" } else { "" };
     let digits = if mass > 0.0 { (2.0 - mass.log10().floor()).clamp(0.0, 9.0) as usize } else { 0 };
-    format!("{}{base}, {joints} joint{}, {mass:.digits$} kg", robot.name, if joints == 1 { "" } else { "s" })
+    format!("{}{base}, {joints}, {mass:.digits$} kg", robot.name)
 }
 
 #[cfg(test)]
@@ -212,6 +212,17 @@ mod tests {
             let is_found_near = body(&svg, "wrist_3_link") > body(&svg, "base_link");
             assert_eq!(is_found_near, is_near, "{shoulder}");
         }
+    }
+
+    #[test]
+    fn the_scale_of_a_small_robot_has_a_length() {
+        let mut small = mozzi_urdf::open("double_pendulum").expect("embedded").description;
+        small.joints.iter_mut().for_each(|joint| joint.origin.p = joint.origin.p * 1e-4);
+        small.frames.iter_mut().for_each(|frame| frame.T.p = frame.T.p * 1e-4);
+        let model = small.build().expect("sound");
+        let bare = Look { bones: true, ..Look::default() };
+        let svg = robot(&model, &[0.3, 0.2], &Drawing::default(), &bare).expect("a picture").svg;
+        assert!(svg.contains(" mm</text>") && !svg.contains(">0 mm</text>"), "{svg:.3000}");
     }
 
     #[test]

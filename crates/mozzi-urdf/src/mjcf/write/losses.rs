@@ -1,7 +1,7 @@
 //! The properties of a robot that MJCF cannot express.
 
 use super::{Plan, equality, is_full, keyframe, travel};
-use crate::written::names_of;
+use crate::written::{chosen_end_effector, names_of};
 use mozzi::model::description::{FreeJoint, JointKind, Limits, Link};
 use mozzi::{Base, Description, SpatialInertia};
 
@@ -45,7 +45,7 @@ pub(super) fn of(d: &Description, plan: &Plan) -> Vec<String> {
     if d.motors.is_some() {
         losses.push("the list of motors".to_string());
     }
-    losses.extend(d.end_effector.iter().map(|name| format!("the choice of the end effector, `{name}`")));
+    losses.extend(chosen_end_effector(d));
     if d.base == Base::Floating && d.free_joint.parent != FreeJoint::default().parent {
         losses.push(format!("the name of the space frame, `{}`", d.free_joint.parent));
     }

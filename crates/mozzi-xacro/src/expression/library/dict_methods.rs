@@ -19,8 +19,9 @@ pub(crate) const NAMES: [&str; 10] =
 pub(crate) const SET_NAMES: [&str; 9] =
     ["add", "copy", "difference", "discard", "intersection", "issubset", "issuperset", "symmetric_difference", "union"];
 
-/// For a dictionary from YAML, Python's own methods use the plain values: without dotted access.
-pub(crate) fn call(cx: &Evaluator, dict: &Entries, is_dotted: bool, name: &str, arguments: Arguments) -> Result<Value> {
+/// For a dictionary from YAML, Python's own methods use the plain values: without dotted access. A copy is a plain
+/// dict.
+pub(crate) fn call(cx: &Evaluator, dict: &Entries, name: &str, arguments: Arguments) -> Result<Value> {
     let count = dict.borrow().len();
     cx.spend(1 + count as u64 / 64)?;
     let missing = |key: &Value| Fault::new(format!("the dict has no key {}", repr::short(key)));
@@ -86,7 +87,6 @@ pub(crate) fn call(cx: &Evaluator, dict: &Entries, is_dotted: bool, name: &str, 
         _ => {
             arguments.bound(name, [], 0)?;
             cx.host.budget().items(count)?;
-            let _ = is_dotted; // a copy is a plain dict
             Ok(Value::dict(dict.borrow().clone()))
         }
     }

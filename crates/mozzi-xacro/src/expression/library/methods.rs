@@ -86,7 +86,7 @@ pub(crate) fn call(cx: &Evaluator, of: &Value, name: &str, mut arguments: Argume
             let items = cx.all_items(of)?;
             list_methods::search(cx, &items, name, arguments)
         }
-        Value::Dict(entries, is_dotted) => dict_methods::call(cx, entries, *is_dotted, name, arguments),
+        Value::Dict(entries, _) => dict_methods::call(cx, entries, name, arguments),
         Value::Set(entries) => dict_methods::call_set(cx, entries, name, arguments),
         Value::Function(_) if !arguments.positional.is_empty() => {
             let receiver = arguments.positional.remove(0);

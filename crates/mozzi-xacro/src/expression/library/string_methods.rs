@@ -10,12 +10,13 @@ use crate::fault::{Fault, Result};
 use crate::space::is_space;
 use std::rc::Rc;
 
-pub(crate) const NAMES: [&str; 33] = [
+pub(crate) const NAMES: [&str; 34] = [
     "capitalize",
     "casefold",
     "center",
     "count",
     "endswith",
+    "expandtabs",
     "find",
     "format",
     "index",
@@ -67,6 +68,27 @@ pub(crate) fn call(cx: &Evaluator, text: &Rc<str>, name: &str, arguments: Argume
             let part = a_text(Some(&part))?;
             let rest = if name == "removeprefix" { text.strip_prefix(&*part) } else { text.strip_suffix(&*part) };
             Ok(Value::text(rest.unwrap_or(text)))
+        }
+        "expandtabs" => {
+            let [size] = arguments.bound(name, ["tabsize"], 0)?;
+            let size = size.map_or(Ok(8), |size| kinds::whole(&size, "`expandtabs`"))?;
+            let size = usize::try_from(size).unwrap_or(0);
+            cx.host.budget().text(text.len().saturating_add(text.matches('\t').count().saturating_mul(size)))?;
+            let (mut expanded, mut column) = (String::new(), 0);
+            for c in text.chars() {
+                match c {
+                    '\t' => {
+                        let spaces = if size > 0 { size - column % size } else { 0 };
+                        expanded.extend(std::iter::repeat_n(' ', spaces));
+                        column += spaces;
+                    }
+                    c => {
+                        expanded.push(c);
+                        column = if matches!(c, '\n' | '\r') { 0 } else { column + 1 };
+                    }
+                }
+            }
+            Ok(Value::text(expanded))
         }
         "zfill" => {
             let [width] = arguments.exactly(name)?;

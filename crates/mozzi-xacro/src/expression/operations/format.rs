@@ -257,7 +257,7 @@ fn general(size: f64, precision: usize, is_alternate: bool, is_repr: bool) -> St
         true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
         false => text.to_string(),
     };
-    if exponent < -4 || exponent >= most.max(if is_repr { 1 } else { i64::MIN }) && exponent >= most {
+    if exponent < -4 || exponent >= most {
         let text = exponential(size, precision - 1, is_alternate);
         let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "+00"));
         return format!("{}e{exponent}", trim(mantissa));

@@ -151,7 +151,7 @@ pub(crate) fn floor_and_rest(a: f64, b: f64) -> (f64, f64) {
 }
 
 fn power(a: f64, b: f64) -> Result<f64> {
-    if a == 0.0 && b < 0.0 {
+    if a == 0.0 && b < 0.0 && b.is_finite() {
         return Err(Fault::new("0 to a negative power"));
     }
     if a < 0.0 && a.is_finite() && b.is_finite() && b.fract() != 0.0 {

@@ -48,9 +48,9 @@ fn write(budget: &Budget, value: &Value, out: &mut String) -> Result<()> {
         }
         Value::Float(number) => out.push_str(&float::repr(*number)),
         Value::Str(text) => quoted(text, out),
-        Value::List(items, _) => sequence(budget, Some(&items.borrow()), ["[", "]"], out)?,
-        Value::Tuple(items) if items.len() == 1 => sequence(budget, Some(items), ["(", ",)"], out)?,
-        Value::Tuple(items) => sequence(budget, Some(items), ["(", ")"], out)?,
+        Value::List(items, _) => sequence(budget, &items.borrow(), ["[", "]"], out)?,
+        Value::Tuple(items) if items.len() == 1 => sequence(budget, items, ["(", ",)"], out)?,
+        Value::Tuple(items) => sequence(budget, items, ["(", ")"], out)?,
         Value::Dict(entries, _) => {
             out.push('{');
             for (i, (key, value)) in entries.borrow().entries().iter().enumerate() {
@@ -63,7 +63,7 @@ fn write(budget: &Budget, value: &Value, out: &mut String) -> Result<()> {
         }
         Value::Set(entries) => match entries.borrow().ordered_keys() {
             Some(keys) if keys.is_empty() => out.push_str("set()"),
-            Some(keys) => sequence(budget, Some(&keys), ["{", "}"], out)?,
+            Some(keys) => sequence(budget, &keys, ["{", "}"], out)?,
             None => return Err(Fault::new("the order of this set is not defined, expected `sorted(…)` of it")),
         },
         Value::Range(range) if range.step == 1 => out.push_str(&format!("range({}, {})", range.start, range.stop)),
@@ -80,7 +80,7 @@ fn write(budget: &Budget, value: &Value, out: &mut String) -> Result<()> {
                 })
                 .collect();
             out.push_str(value.kind());
-            sequence(budget, Some(&items), ["([", "])"], out)?;
+            sequence(budget, &items, ["([", "])"], out)?;
         }
         Value::Function(function) => match function.shown() {
             Some(shown) => out.push_str(&shown),
@@ -97,9 +97,9 @@ fn no_text(value: &Value) -> Box<Fault> {
     Fault::new(format!("{} has no text, expected a value", crate::expression::values::kinds::a_kind(value)))
 }
 
-fn sequence(budget: &Budget, items: Option<&[Value]>, brackets: [&str; 2], out: &mut String) -> Result<()> {
+fn sequence(budget: &Budget, items: &[Value], brackets: [&str; 2], out: &mut String) -> Result<()> {
     out.push_str(brackets[0]);
-    for (i, item) in items.unwrap_or_default().iter().enumerate() {
+    for (i, item) in items.iter().enumerate() {
         out.push_str(if i > 0 { ", " } else { "" });
         budget.deeper(|| write(budget, item, out))?;
     }

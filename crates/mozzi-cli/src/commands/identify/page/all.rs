@@ -1,7 +1,7 @@
 //! Every number of the result: `--all`.
 
 use crate::tables::samples::Row;
-use crate::text::{Page, table};
+use crate::text::{Page, digits, table};
 use mozzi_identify::Identification;
 use mozzi_identify::judgement::Judgement;
 
@@ -16,9 +16,13 @@ pub fn parameters(page: &mut Page, found: &Identification<'_>, judged: &Judgemen
         rows.push(vec![
             unknown.name.clone(),
             columns.unit(k).to_string(),
-            format!("{:.4}", unknown.prior),
-            format!("{:.4}", optimum.x[k]),
-            if apparent == 0.0 { String::new() } else { format!("{apparent:+.4}") },
+            digits(unknown.prior, 5),
+            digits(optimum.x[k], 5),
+            if apparent == 0.0 {
+                String::new()
+            } else {
+                format!("{}{}", if apparent > 0.0 { "+" } else { "" }, digits(apparent, 5))
+            },
             judged.standings[k].text(),
             format!("{:.0} %", 100.0 * optimum.prior_share[k]),
         ]);
@@ -49,8 +53,8 @@ pub fn weak(page: &mut Page, judged: &Judgement) {
         };
         rows.push(vec![
             name,
-            format!("{:.4}", parameter.least_squares),
-            format!("{:.4}", parameter.deviation),
+            digits(parameter.least_squares, 5),
+            digits(parameter.deviation, 5),
             parameter.advice.clone().unwrap_or_default(),
         ]);
     }

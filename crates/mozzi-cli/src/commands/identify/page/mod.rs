@@ -3,7 +3,7 @@
 mod all;
 
 use crate::tables::samples::Row;
-use crate::text::{Page, table};
+use crate::text::{Page, digits, table};
 use all::{column_table, parameters, weak};
 use mozzi::Model;
 use mozzi_identify::judgement::Judgement;
@@ -113,8 +113,8 @@ fn joints(page: &mut Page, found: &Identification<'_>, judged: &Judgement) {
             };
             let value = if kind.starts_with("apparent") { optimum.apparent[k] } else { optimum.x[k] };
             match judged.standings[k].deviation {
-                Some(deviation) => format!("{value:.3} ± {deviation:.3}"),
-                None => format!("{value:.3} ?"),
+                Some(deviation) => format!("{} ± {}", digits(value, 4), digits(deviation, 2)),
+                None => format!("{} ?", digits(value, 4)),
             }
         };
         rows.push(std::iter::once(joint.to_string()).chain(kinds.iter().map(cell)).collect());
@@ -129,12 +129,12 @@ fn servos(page: &mut Page, judged: &Judgement) {
     let head = ["", "kp, N m/rad or N/m", "kd, N m s/rad or N s/m", "bias, N m or N", "error"];
     let mut rows = vec![head.map(str::to_string).to_vec()];
     for servo in &judged.servos {
-        let pair = |[value, deviation]: [f64; 2]| format!("{value:.3} ± {deviation:.3}");
+        let pair = |[value, deviation]: [f64; 2]| format!("{} ± {}", digits(value, 4), digits(deviation, 2));
         rows.push(vec![
             servo.joint.clone(),
             pair(servo.stiffness),
             pair(servo.damping),
-            format!("{:.3}", servo.bias),
+            digits(servo.bias, 4),
             format!("{:.1} %", 100.0 * servo.nrms),
         ]);
     }
@@ -150,8 +150,8 @@ fn bodies(page: &mut Page, found: &Identification<'_>, judged: &Judgement) {
         let unknown = &columns.unknowns[k];
         rows.push(vec![
             unknown.name.trim_end_matches(".m").to_string(),
-            format!("{:.3}", unknown.prior),
-            format!("{:.3}", optimum.x[k]),
+            digits(unknown.prior, 4),
+            digits(optimum.x[k], 4),
             judged.standings[k].text(),
         ]);
     }
@@ -177,7 +177,7 @@ fn errors_table(page: &mut Page, title: &str, (found, is_all): (&Identification<
     for (j, name) in found.setup.columns.model.velocity_names().enumerate() {
         let force = errors.force[j];
         let percent = if force > 0.0 { 100.0 * errors.consistent[j] / force } else { 0.0 };
-        let cells = std::iter::once(force).chain(of.iter().map(|(_, list)| list[j])).map(|x| format!("{x:.3}"));
+        let cells = std::iter::once(force).chain(of.iter().map(|(_, list)| list[j])).map(|x| digits(x, 4));
         rows.push([name.to_string()].into_iter().chain(cells).chain([format!("{percent:.2}")]).collect());
     }
     let share = |list: &[f64]| format!("{:.2} %", 100.0 * errors.normalized(list));

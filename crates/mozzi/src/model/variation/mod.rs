@@ -1,14 +1,15 @@
 //! A model whose parameters vary: constants that are dual numbers, their derivatives along a change of the robot.
 
-use super::description::Joint;
-use super::{Error, Freedom, JOINT_PARAMETERS, Model, Motion};
 use crate::lie::SE3;
 use crate::linalg::Vec3;
+use crate::model::description::{Anchor, ConstraintKind, Joint};
+use crate::model::{Error, Freedom, Model, Motion, TieKind};
 use crate::scalar::Dual;
 use crate::spatial::{SpatialInertia, Twist};
 use alloc::format;
 use alloc::string::ToString;
 use alloc::vec;
+use alloc::vec::Vec;
 
 /// A change of a robot's parameters, for [`Model::with_parameter_tangent`]. ε is the size of the change:
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +109,7 @@ impl Model<f64> {
                     let (G, T) = (self.description().links[i].inertia, self.frames[i].T.map(Dual::constant));
                     let (m, I_c) = (Dual::constant(G.mass), G.about_center_of_mass().map(Dual::constant));
                     let c = G.center_of_mass().map(Dual::constant) + rate.map(seed);
-                    let moved = SpatialInertia::new(m, c, I_c).transformed(T).map(|x| seed(x.derivative));
+                    let moved = transformed(SpatialInertia::new(m, c, I_c), T).map(|x| seed(x.derivative));
                     *inertia(&mut model, self.frames[i].slot) += moved;
                 }
                 Variation::Axis { joint, motion } => {
@@ -138,15 +139,12 @@ impl Model<f64> {
         if found != expected {
             return Err(Error::WrongLength { what: "a rate of the parameters", found, expected });
         }
-        let (of_bodies, of_joints) = rate.split_at(10 * self.bodies().count());
-        let (of_joints, of_rotors) = of_joints.split_at(JOINT_PARAMETERS * self.places().len());
-        for (slot, rate) in self.bodies().zip(of_bodies.as_chunks().0) {
+        let (of_bodies, of_joints, of_rotors) = self.parts_of(rate);
+        for (slot, rate) in self.bodies().zip(of_bodies) {
             let rate = SpatialInertia::from_parameters(*rate).transformed(self.link_frame(slot));
             *inertia(model, slot) += rate.map(seed);
         }
-        for (place, &[armature, damping, friction, stiffness, preload]) in
-            self.places().iter().zip(of_joints.as_chunks().0)
-        {
+        for (place, &[armature, damping, friction, stiffness, preload]) in self.places().iter().zip(of_joints) {
             for j in place.velocities() {
                 model.armature[j] += seed(armature);
                 model.damping[j] += seed(damping);
@@ -171,7 +169,7 @@ impl Model<f64> {
         let joint = &robot.joints[robot.joint_at(name)?];
         if let Ok(slot) = self.slot_of(name) {
             let link = &mut model.links[slot - 1];
-            link.M = small_motion(self.link_frame(slot), -motion) * link.M; // (T_pc e^{[ξ]ε} T_ci)⁻¹
+            link.M = product(small_motion(self.link_frame(slot), -motion), link.M); // (T_pc e^{[ξ]ε} T_ci)⁻¹
             return Ok(());
         }
         let mut moved = vec![self.link_named(&joint.child)?];
@@ -182,7 +180,7 @@ impl Model<f64> {
                 match self.slot_of(&joint.name) {
                     Ok(slot) => {
                         let M = &mut model.links[slot - 1].M;
-                        *M = *M * small_motion(self.frames[moved[0]].T, -motion);
+                        *M = product(*M, small_motion(self.frames[moved[0]].T, -motion));
                     }
                     Err(_) => moved.push(self.link_named(&joint.child)?),
                 }
@@ -191,15 +189,30 @@ impl Model<f64> {
         }
         let E = small_motion(self.frames[moved[0]].T, motion);
         for &link in &moved {
-            let (slot, T) = (self.frames[link].slot, E * self.frames[link].T.map(Dual::constant));
-            let G = robot.links[link].inertia.map(Dual::constant).transformed(T);
+            let (slot, T) = (self.frames[link].slot, product(E, self.frames[link].T.map(Dual::constant)));
+            let G = transformed(robot.links[link].inertia.map(Dual::constant), T);
             *inertia(model, slot) += G.map(|x| seed(x.derivative));
         }
         let of_frames = (0..).zip(&robot.frames).filter_map(|(k, frame)| {
             moved.iter().any(|&link| robot.links[link].name == frame.link).then_some(robot.links.len() + k)
         });
-        for frame in moved.iter().copied().chain(of_frames) {
-            model.frames[frame].T = E * model.frames[frame].T;
+        let moved: Vec<usize> = moved.iter().copied().chain(of_frames).collect();
+        for &frame in &moved {
+            model.frames[frame].T = product(E, model.frames[frame].T);
+        }
+        let is_moved = |anchor: &Anchor| {
+            let frame = anchor.frame.as_ref().and_then(|name| self.frame(name).ok());
+            frame.is_some_and(|frame| moved.contains(&frame.index()))
+        };
+        for (tie, constraint) in model.ties.list.iter_mut().zip(&robot.constraints) {
+            if let (TieKind::Frames { a, b, .. }, ConstraintKind::Frames { a: A, b: B, .. }) =
+                (&mut tie.kind, &constraint.kind)
+            {
+                [(a, A), (b, B)]
+                    .into_iter()
+                    .filter(|(_, of)| is_moved(of))
+                    .for_each(|(end, _)| end.T = product(E, end.T));
+            }
         }
         Ok(())
     }
@@ -234,7 +247,19 @@ fn seed(rate: f64) -> Dual {
     Dual { value: 0.0, derivative: rate }
 }
 
+/// One copy each: operations on dual numbers are long where they are inlined.
+#[inline(never)]
+fn product(T: SE3<Dual>, U: SE3<Dual>) -> SE3<Dual> {
+    T * U
+}
+
+#[inline(never)]
+fn transformed(G: SpatialInertia<Dual>, T: SE3<Dual>) -> SpatialInertia<Dual> {
+    G.transformed(T)
+}
+
 /// e^{`[Ad_T ξ]`ε}: the motion ξ of a frame at T, expressed in the frame in which T is given.
+#[inline(never)]
 fn small_motion(T: SE3, xi: Twist) -> SE3<Dual> {
     SE3::exp(Twist::from_array((T.Ad() * xi).to_array().map(seed)))
 }
@@ -250,13 +275,17 @@ fn inertia(model: &mut Model<Dual>, slot: usize) -> &mut SpatialInertia<Dual> {
 fn move_contents(model: &mut Model<Dual>, slot: usize, D: SE3<Dual>) {
     for (i, link) in (1..).zip(&mut model.links) {
         if i == slot {
-            (link.M, link.G) = (D * link.M, link.G.transformed(D));
+            (link.M, link.G) = (product(D, link.M), transformed(link.G, D));
         } else if link.parent == slot {
-            link.M = link.M * D.inverse();
+            link.M = product(link.M, D.inverse());
         }
     }
     for frame in model.frames.iter_mut().filter(|frame| frame.slot == slot) {
-        frame.T = D * frame.T;
+        frame.T = product(D, frame.T);
+    }
+    for tie in &mut model.ties.list {
+        let TieKind::Frames { a, b, .. } = &mut tie.kind else { continue };
+        [a, b].into_iter().filter(|end| end.slot == Some(slot)).for_each(|end| end.T = product(D, end.T));
     }
 }
 
@@ -265,130 +294,4 @@ fn bad_joint(name: &str, kind: &str, expected: &'static str) -> Error {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::dynamics::{forward_dynamics, inverse_dynamics};
-    use crate::kinematics::forward_kinematics;
-    use crate::model::description::JointKind;
-    use crate::spatial::ScrewAxis;
-    use crate::testing::{floating_tree, state, tree, twist, wrench};
-    use crate::{Description, Environment, Workspace, Wrench};
-    use alloc::vec::Vec;
-
-    /// τ, θ̈ and the tip's position, and their derivatives along the changes, from dual constants.
-    fn by_duals(model: &Model, changes: &[Variation], seed: u64) -> Vec<Dual> {
-        let with_parameter_tangent = model.with_parameter_tangent(changes).expect("known names");
-        let [theta, dtheta, ddtheta] = state(model, seed).map(|x| Dual::constants(&x));
-        let (mut w, tip) = (Workspace::<Dual>::new(&with_parameter_tangent), model.end_effector().expect("named"));
-        let applied = [(tip, Wrench::from_array(wrench(seed).to_array().map(Dual::constant)))];
-        let environment = Environment { applied: &applied, ..with_parameter_tangent.environment() };
-        let (mut tau, mut found) = (ddtheta.clone(), ddtheta.clone());
-        inverse_dynamics(&with_parameter_tangent, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut tau);
-        forward_dynamics(&with_parameter_tangent, &theta, &dtheta, &ddtheta, &environment, &mut w, &mut found);
-        let p = forward_kinematics(&with_parameter_tangent, &theta, tip).p;
-        tau.into_iter().chain(found).chain(p.0).collect()
-    }
-
-    fn values(model: &Model, seed: u64) -> Vec<f64> {
-        by_duals(model, &[], seed).into_iter().map(|x| x.value).collect()
-    }
-
-    /// Compares with central differences of the rebuilt description.
-    fn check(model: &Model, change: Variation, what: &str, perturb: impl Fn(&mut Description, f64)) {
-        let h = 1e-5;
-        let at = |step: f64| {
-            let mut robot = model.description().clone();
-            perturb(&mut robot, step);
-            values(&robot.build().expect("sound"), 7)
-        };
-        let (plus, minus, found) = (at(h), at(-h), by_duals(model, &[change], 7));
-        let n = model.n();
-        for part in [0..n, n..2 * n, 2 * n..2 * n + 3] {
-            let differences: Vec<f64> = part.clone().map(|k| (plus[k] - minus[k]) / (2.0 * h)).collect();
-            let size = part.clone().map(|k| found[k].value.abs()).chain(differences.iter().map(|x| x.abs()));
-            let size = size.fold(1.0, f64::max);
-            for (k, difference) in part.zip(differences) {
-                let error = (found[k].derivative - difference).abs() / size;
-                assert!(error < 1e-7, "{what}, entry {k}: {} {difference}", found[k].derivative);
-            }
-        }
-    }
-
-    #[test]
-    fn duals_equal_differences_of_the_description() {
-        for model in [tree(3, 7, 0), tree(5, 8, 2), floating_tree(2, 6, 0)] {
-            let places = model.description().clone();
-            let link = |name: &str| places.links.iter().position(|link| link.name == name).expect("a link");
-            for name in ["link0", "link2", "tool2", "link5"] {
-                let i = link(name);
-                let G = places.links[i].inertia;
-                let (c, I_c) = (G.center_of_mass(), G.about_center_of_mass());
-                check(&model, Variation::Mass { link: name }, name, |robot, h| {
-                    robot.links[i].inertia = SpatialInertia::new(G.mass + h, c, I_c);
-                });
-                let rate = Vec3([0.3, -0.2, 0.5]);
-                check(&model, Variation::CenterOfMass { link: name, rate }, name, |robot, h| {
-                    robot.links[i].inertia = SpatialInertia::new(G.mass, c + rate * h, I_c);
-                });
-                let rate = crate::testing::inertia(9);
-                check(&model, Variation::Inertia { link: name, rate }, name, |robot, h| {
-                    robot.links[i].inertia += rate * h;
-                });
-            }
-            let motion = twist(4);
-            for (i, joint) in places.joints.iter().enumerate() {
-                let name = joint.name.as_str();
-                check(&model, Variation::Placement { joint: name, motion }, name, |robot, h| {
-                    robot.joints[i].origin = joint.origin * SE3::exp(motion * h);
-                });
-                let JointKind::Screw(A) = joint.kind else { continue };
-                let set = |robot: &mut Description, V: Twist| {
-                    robot.joints[i].kind = JointKind::Screw(ScrewAxis::normalize(V).expect("a screw").0);
-                };
-                check(&model, Variation::Axis { joint: name, motion }, name, |robot, h| {
-                    set(robot, SE3::exp(motion * h).Ad() * A.twist());
-                });
-                if !A.is_prismatic() {
-                    check(&model, Variation::Pitch { joint: name }, name, |robot, h| {
-                        set(robot, Twist { v: A.twist().v + A.twist().w * h, ..A.twist() });
-                    });
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn changes_add_up_and_parameters_are_the_regressors_columns() {
-        for model in [tree(3, 7, 2), floating_tree(2, 6, 1)] {
-            let [theta, dtheta, ddtheta] = state(&model, 7);
-            let Y = model.regressor(&theta, &dtheta, &ddtheta, &model.environment()).expect("lengths");
-            let p = model.parameter_count();
-            for k in 0..p {
-                let mut unit = vec![0.0; p];
-                unit[k] = 1.0;
-                let found = by_duals(&model, &[Variation::Parameters(&unit)], 7);
-                for (j, y) in Y.column(k).iter().enumerate() {
-                    assert!((found[j].derivative - y).abs() < 1e-12 * Y.amax(), "{k}: {} {y}", found[j].derivative);
-                }
-            }
-            let (a, b) = (Variation::Mass { link: "link2" }, Variation::Axis { joint: "joint3", motion: twist(1) });
-            let (one, other, both) =
-                (by_duals(&model, &[a], 7), by_duals(&model, &[b], 7), by_duals(&model, &[a, b], 7));
-            for ((a, b), both) in one.iter().zip(&other).zip(&both) {
-                let sum = a.derivative + b.derivative;
-                assert!((sum - both.derivative).abs() <= 1e-9 * (1.0 + sum.abs()), "{sum} {both:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn what_cannot_vary_is_refused() {
-        let model = tree(1, 5, 0);
-        let fails = |change: Variation| model.with_parameter_tangent(&[change]).expect_err("refused").to_string();
-        assert!(fails(Variation::Mass { link: "tip" }).contains("there is no frame `tip`"));
-        assert!(fails(Variation::Axis { joint: "weld2", motion: twist(1) }).contains("`weld2`, which is fixed"));
-        assert!(fails(Variation::Pitch { joint: "joint4" }).contains("`joint4`, which is prismatic"));
-        assert!(fails(Variation::Placement { joint: "x", motion: twist(1) }).contains("there is no joint `x`"));
-        assert!(fails(Variation::Parameters(&[0.0])).contains("has 1 entries, expected 75"));
-    }
-}
+mod tests;
